@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The layers of the project: a folder is a library is a target, and a library may use only what
+# stands here (regular expressions over target names). doc/tour.md explains the order.
+set(terrain_layer_core "Eigen3::Eigen")
+set(terrain_layer_params "core" "mrpt::config" "mrpt::containers")
+set(terrain_layer_io "core" "params" "mrpt::obs" "mrpt::maps" "mrpt::io" "mrpt::containers")
+set(terrain_layer_view "core" "mrpt::opengl" "PkgConfig::cairo")
+set(terrain_layer_eval "core" "params" "io")
+
+# terrain_library(NAME USES target... [PRIVATE_USES target...])
+# Builds libs/NAME from all its sources as mrpt_terrain::NAME. Refuses a dependency that the table
+# above does not allow; libraries of this project are written without namespace.
+function(terrain_library name)
+  cmake_parse_arguments(arg "" "" "USES;PRIVATE_USES" ${ARGN})
+  if(NOT DEFINED terrain_layer_${name})
+    message(FATAL_ERROR "libs/${name} is not in the table of cmake/layers.cmake")
+  endif()
+  foreach(dependency IN LISTS arg_USES arg_PRIVATE_USES)
+    if(NOT dependency IN_LIST terrain_layer_${name})
+      message(FATAL_ERROR "libs/${name} may not use ${dependency}: cmake/layers.cmake allows "
+        "${terrain_layer_${name}}")
+    endif()
+  endforeach()
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/*.cpp)
+  add_library(mrpt_terrain_${name} STATIC ${sources})
+  add_library(mrpt_terrain::${name} ALIAS mrpt_terrain_${name})
+  set_target_properties(mrpt_terrain_${name} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(mrpt_terrain_${name} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(mrpt_terrain_${name} PUBLIC cxx_std_17)
+  list(TRANSFORM arg_USES REPLACE "^([a-z]+)$" "mrpt_terrain::\\1")
+  list(TRANSFORM arg_PRIVATE_USES REPLACE "^([a-z]+)$" "mrpt_terrain::\\1")
+  target_link_libraries(mrpt_terrain_${name}
+    PUBLIC ${arg_USES}
+    PRIVATE ${arg_PRIVATE_USES} $<BUILD_INTERFACE:mrpt_terrain_options>)
+  install(TARGETS mrpt_terrain_${name} EXPORT mrpt_terrain_targets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  set_property(GLOBAL APPEND PROPERTY terrain_libraries ${name})
+endfunction()

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "mrpt_terrain/core/classes.h"
+#include "mrpt_terrain/core/clusters.h"
+#include "mrpt_terrain/core/elevation_grid.h"
+#include "mrpt_terrain/core/features.h"
+#include "mrpt_terrain/core/ground.h"
+#include "mrpt_terrain/core/labels.h"
+
+namespace mrpt_terrain {
+
+/// All parameters of the description of one scan, a struct per stage. The defaults are the
+/// paper's values where it gives them (params/paper.ini).
+struct DescriptionParams {
+  GridParams grid;
+  GroundParams ground;
+  ClusterParams clusters;
+  RoughnessParams roughness;
+  SlopeParams slope;
+  ClassParams classes;
+
+  template <class Self, class Visitor>
+  static void visit_sections(Self& self, Visitor&& visit) {
+    visit(self.grid, "grid", "Extent and resolution of the elevation grid");
+    visit(self.ground, "ground", "Ground segmentation, eqs. (1) and (2)");
+    visit(self.clusters, "clusters", "Grids clustering");
+    visit(self.roughness, "roughness", "Roughness, eq. (4) and Algorithm 1");
+    visit(self.slope, "slope", "Slope angle, eqs. (5) and (6), Algorithm 2");
+    visit(self.classes, "classes", "Terrain classes, Table 1");
+  }
+};
+
+/// One thing in the terrain: a cluster of cells with its features and class. Metres, radians.
+struct ClusterDescription {
+  TerrainClass terrain_class = TerrainClass::kOther;
+  HeightIndex height;
+  Roughness roughness;
+  Slope slope;
+  std::int32_t cells = 0;
+  std::int32_t points = 0;
+  float h_min = 0.0F;         ///< lowest point, metres
+  float h_max = 0.0F;         ///< highest point, metres
+  Position2 centroid;         ///< mean of its points
+  Position2 min_corner;       ///< of the cells' bounding rectangle, edges of cells included
+  Position2 max_corner;
+};
+
+/// The stages of a description, in the order in which they run.
+enum class Stage : std::uint8_t { kGrid, kGround, kClusters, kHeightAndRoughness, kSlope, kClasses, kLabels };
+inline constexpr std::size_t kStageCount = 7;
+constexpr EnumNames<Stage, kStageCount> enum_names(Stage) {
+  return {{{Stage::kGrid, "grid"},
+           {Stage::kGround, "ground"},
+           {Stage::kClusters, "clusters"},
+           {Stage::kHeightAndRoughness, "height_and_roughness"},
+           {Stage::kSlope, "slope"},
+           {Stage::kClasses, "classes"},
+           {Stage::kLabels, "labels"}}};
+}
+
+/// What is told after each stage; `core` has no clock, so whoever times the stages does it here.
+class StageListener {
+ public:
+  virtual ~StageListener() = default;
+  virtual void stage_done(Stage stage) = 0;
+};
+
+/// Description of one scan: everything that the stages found out.
+struct Description {
+  ElevationGrid grid;
+  GroundSegmentation ground;
+  Clusters clusters;
+  std::vector<ClusterDescription> things;  ///< one per cluster, same numbers
+  PointLabels labels;                      ///< one per input point
+  ProjectionCounts projection;
+};
+
+/// Scratch memory of all stages. Reuse it together with the `Description`: scans of similar size
+/// are then described without allocating.
+struct DescriptionWorkspace {
+  ElevationGridWorkspace grid;
+  GroundWorkspace ground;
+  ClusterWorkspace clusters;
+  SlopeWorkspace slope;
+  PointSlots point_slots;
+  std::vector<Moments> cluster_moments;
+  std::vector<std::uint8_t> wanted;
+  IndexRows points_of;
+};
+
+/// Describes one scan by the method of Meng, Cao et al. 2018: elevation grid, ground segmentation,
+/// clustering, features, classes, labels.
+///
+/// The same points and parameters give the same bytes on every run. No points, or none in the map,
+/// give an empty description and counts that say why.
+/// \param points in the robot frame (x forward, y left, z up, z = 0 on the ground), metres
+/// \param[in,out] description overwritten
+/// \param listener told after each stage; may be null
+void describe(const PointsView& points, const DescriptionParams& params,
+              DescriptionWorkspace& workspace, Description& description,
+              StageListener* listener = nullptr);
+
+}  // namespace mrpt_terrain
