@@ -18,8 +18,7 @@ struct ClusterParams {
 
   template <class Self, class Visitor>
   static void visit_params(Self& self, Visitor&& visit) {
-    visit(self.t_c, ParamInfo{"t_c", "T_c", "", 1, 1000000,
-                              "clusters of fewer cells are dropped"});
+    visit(self.t_c, ParamInfo{"t_c", "T_c", "", 1, 1000000, "clusters of fewer cells are dropped"});
   }
 };
 
@@ -54,8 +53,8 @@ struct Clusters {
 
 /// Scratch memory of `find_clusters`.
 struct ClusterWorkspace {
-  std::vector<std::int32_t> stack;
-  std::vector<std::int32_t> group;
+  std::vector<std::int32_t> parent;         ///< per slot: union-find
+  std::vector<std::int32_t> cells_of_root;  ///< per slot: size of the group it is the first of
 };
 
 /// Flood fill over the non-ground cells, connected in eight directions (paper, section "Grids

@@ -8,9 +8,11 @@
 #include "mrpt_terrain/core/classes.h"
 #include "mrpt_terrain/core/clusters.h"
 #include "mrpt_terrain/core/elevation_grid.h"
-#include "mrpt_terrain/core/features.h"
 #include "mrpt_terrain/core/ground.h"
+#include "mrpt_terrain/core/height_index.h"
 #include "mrpt_terrain/core/labels.h"
+#include "mrpt_terrain/core/roughness.h"
+#include "mrpt_terrain/core/slope.h"
 
 namespace mrpt_terrain {
 
@@ -43,15 +45,23 @@ struct ClusterDescription {
   Slope slope;
   std::int32_t cells = 0;
   std::int32_t points = 0;
-  float h_min = 0.0F;         ///< lowest point, metres
-  float h_max = 0.0F;         ///< highest point, metres
-  Position2 centroid;         ///< mean of its points
-  Position2 min_corner;       ///< of the cells' bounding rectangle, edges of cells included
+  float h_min = 0.0F;    ///< lowest point, metres
+  float h_max = 0.0F;    ///< highest point, metres
+  Position2 centroid;    ///< mean of its points
+  Position2 min_corner;  ///< of the cells' bounding rectangle, edges of cells included
   Position2 max_corner;
 };
 
 /// The stages of a description, in the order in which they run.
-enum class Stage : std::uint8_t { kGrid, kGround, kClusters, kHeightAndRoughness, kSlope, kClasses, kLabels };
+enum class Stage : std::uint8_t {
+  kGrid,
+  kGround,
+  kClusters,
+  kHeightAndRoughness,
+  kSlope,
+  kClasses,
+  kLabels
+};
 inline constexpr std::size_t kStageCount = 7;
 constexpr EnumNames<Stage, kStageCount> enum_names(Stage) {
   return {{{Stage::kGrid, "grid"},
@@ -76,6 +86,7 @@ struct Description {
   GroundSegmentation ground;
   Clusters clusters;
   std::vector<ClusterDescription> things;  ///< one per cluster, same numbers
+  CellLabels cells;                        ///< one per slot of the grid
   PointLabels labels;                      ///< one per input point
   ProjectionCounts projection;
 };
@@ -90,6 +101,7 @@ struct DescriptionWorkspace {
   PointSlots point_slots;
   std::vector<Moments> cluster_moments;
   std::vector<std::uint8_t> wanted;
+  std::vector<TerrainClass> class_of;
   IndexRows points_of;
 };
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mrpt_terrain/core/grid_geometry.h"
+#include "mrpt_terrain/core/labels.h"
 #include "mrpt_terrain/core/moments.h"
 #include "mrpt_terrain/core/param_info.h"
 #include "mrpt_terrain/core/points.h"
@@ -41,19 +42,20 @@ inline constexpr Slot kUnobserved = -1;
 /// slot. All heights are metres in the frame of the points.
 struct ElevationGrid {
   GridGeometry geometry;
-  std::vector<Slot> slot_of;       ///< per CellId, frame included: slot, or kUnobserved
-  std::vector<CellId> cell;        ///< per slot: which cell it is
-  std::vector<float> h_min;        ///< per slot: smallest height
-  std::vector<float> h_max;        ///< per slot: greatest height
-  std::vector<float> h_mean;       ///< per slot: mean height
-  std::vector<Moments> moments;    ///< per slot: number, mean and scatter of the points
+  std::vector<Slot> slot_of;     ///< per CellId, frame included: slot, or kUnobserved
+  std::vector<CellId> cell;      ///< per slot: which cell it is
+  std::vector<float> h_min;      ///< per slot: smallest height
+  std::vector<float> h_max;      ///< per slot: greatest height
+  std::vector<float> h_mean;     ///< per slot: mean height
+  std::vector<Moments> moments;  ///< per slot: number, mean and scatter of the points
 
   /// Number of observed cells.
   [[nodiscard]] std::size_t observed() const { return cell.size(); }
   /// Slot of a cell; kUnobserved also for cells outside the grid.
   [[nodiscard]] Slot slot_at(CellIndex index) const {
-    return geometry.contains(index) ? slot_of[static_cast<std::size_t>(value_of(geometry.id_of(index)))]
-                                    : kUnobserved;
+    return geometry.contains(index)
+               ? slot_of[static_cast<std::size_t>(value_of(geometry.id_of(index)))]
+               : kUnobserved;
   }
   /// h_diff of the paper: h_max - h_min of a slot.
   [[nodiscard]] float h_diff(std::size_t slot) const { return h_max[slot] - h_min[slot]; }
@@ -67,12 +69,21 @@ struct ProjectionCounts {
   std::size_t outside_map = 0;
 };
 
-/// Slot of every point. Points without one carry `-2 - reason` (see `reason_of_point_slot`).
+/// Slot of every point, or for points without one the negative code of the reason.
 using PointSlots = std::vector<std::int32_t>;
+[[nodiscard]] constexpr std::int32_t point_slot_of(UnknownReason reason) {
+  return -1 - static_cast<std::int32_t>(reason);
+}
+/// The reason why a point has no slot; kNone if it has one.
+[[nodiscard]] constexpr UnknownReason reason_of(std::int32_t point_slot) {
+  return point_slot >= 0 ? UnknownReason::kNone : static_cast<UnknownReason>(-1 - point_slot);
+}
 
 /// Scratch memory of `build_elevation_grid`; holds nothing that matters between calls.
 struct ElevationGridWorkspace {
-  std::vector<std::uint8_t> hit;
+  std::vector<std::uint8_t> hit;  ///< per CellId: a point fell into it
+  std::vector<Position2> centre;  ///< per slot
+  std::vector<MomentSums> sums;   ///< per slot
 };
 
 /// Projects points into the grid (paper, section "Elevation grid map") and gathers the heights and

@@ -22,9 +22,9 @@ constexpr EnumNames<GroundKernel, 2> enum_names(GroundKernel) {
 
 /// Thresholds of the ground segmentation (paper, eqs. 1 and 2).
 struct GroundParams {
-  double t_diff = 0.05;   ///< T_diff, metres
-  double t_high = 0.05;   ///< T_high, metres
-  double t_low = -0.05;   ///< T_low, metres
+  double t_diff = 0.05;  ///< T_diff, metres
+  double t_high = 0.05;  ///< T_high, metres
+  double t_low = -0.05;  ///< T_low, metres
   GroundKernel kernel = GroundKernel::kMeanDifference;
 
   template <class Self, class Visitor>
@@ -35,24 +35,24 @@ struct GroundParams {
                                  "lowest height from which a cell is not ground"});
     visit(self.t_low, ParamInfo{"t_low", "T_low", "m", -10.0, 0.0,
                                 "lowest height down to which a cell is ground"});
-    visit(self.kernel, ParamInfo{"kernel", "w(s,t)", "", 0, 0,
-                                 "weights of the height-difference kernel"});
+    visit(self.kernel,
+          ParamInfo{"kernel", "w(s,t)", "", 0, 0, "weights of the height-difference kernel"});
   }
 };
 
 /// Which rule took a cell out of the ground; the first that applies, in this order.
 enum class GroundRule : std::uint8_t {
-  kGround = 0,   ///< none: the cell is in C_G
-  kDifference,   ///< eq. 1: h_diff >= T_diff
-  kHigh,         ///< eq. 1: h_min >= T_high
-  kLow,          ///< eq. 1: h_min <= T_low
-  kKernel,       ///< eq. 2
+  kGround = 0,  ///< none: the cell is in C_G
+  kDifference,  ///< eq. 1: h_diff >= T_diff
+  kHigh,        ///< eq. 1: h_min >= T_high
+  kLow,         ///< eq. 1: h_min <= T_low
+  kKernel,      ///< eq. 2
 };
 
 /// C_G and C_N of the paper. Cells without points are in neither.
 struct GroundSegmentation {
   std::vector<GroundRule> rule;  ///< per slot; kGround = C_G, everything else = C_N
-  std::vector<float> h_mean;     ///< per slot, metres: mean height, raised by eq. 2 where it says so
+  std::vector<float> h_mean;  ///< per slot, metres: mean height, raised by eq. 2 where it says so
 
   [[nodiscard]] bool is_ground(std::size_t slot) const { return rule[slot] == GroundRule::kGround; }
 };

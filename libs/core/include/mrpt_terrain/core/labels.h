@@ -39,7 +39,13 @@ constexpr EnumNames<UnknownReason, 4> enum_names(UnknownReason) {
 
 /// What a cluster is (Table 1 of the paper). `kNone` marks points and cells outside all clusters.
 /// The values are those of the high 16 bits of label files.
-enum class TerrainClass : std::uint8_t { kNone = 0, kSlope = 1, kPothole = 2, kObstacle = 3, kOther = 4 };
+enum class TerrainClass : std::uint8_t {
+  kNone = 0,
+  kSlope = 1,
+  kPothole = 2,
+  kObstacle = 3,
+  kOther = 4
+};
 constexpr EnumNames<TerrainClass, 5> enum_names(TerrainClass) {
   return {{{TerrainClass::kNone, "none"},
            {TerrainClass::kSlope, "slope"},
@@ -50,6 +56,12 @@ constexpr EnumNames<TerrainClass, 5> enum_names(TerrainClass) {
 
 /// Cluster number of points and cells that belong to none.
 inline constexpr std::int32_t kNoCluster = -1;
+
+/// One label per observed cell.
+struct CellLabels {
+  std::vector<Support> support;             ///< per slot
+  std::vector<TerrainClass> terrain_class;  ///< per slot: class of the cell's cluster
+};
 
 /// One label per input point, in the order of the input; all arrays have its length.
 struct PointLabels {

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/core/describe.h"
+
+#include <algorithm>
+
+#include "mrpt_terrain/core/label_stage.h"
+
+namespace mrpt_terrain {
+namespace {
+
+/// Extent, number and moments of a cluster's points, from its cells.
+void summarise(const ElevationGrid& grid, IndexRange slots, ClusterDescription& thing,
+               Moments& moments) {
+  thing = ClusterDescription{};
+  moments = Moments{};
+  const auto first = static_cast<std::size_t>(*slots.begin());
+  thing.h_min = grid.h_min[first];
+  thing.h_max = grid.h_max[first];
+  CellIndex low = grid.geometry.index_of(grid.cell[first]);
+  CellIndex high = low;
+  for (const std::int32_t item : slots) {
+    const auto slot = static_cast<std::size_t>(item);
+    const CellIndex cell = grid.geometry.index_of(grid.cell[slot]);
+    low = {std::min(low.l, cell.l), std::min(low.w, cell.w)};
+    high = {std::max(high.l, cell.l), std::max(high.w, cell.w)};
+    thing.h_min = std::min(thing.h_min, grid.h_min[slot]);
+    thing.h_max = std::max(thing.h_max, grid.h_max[slot]);
+    moments.merge(grid.moments[slot]);
+  }
+  const double half = grid.geometry.cell_size() / 2;
+  const Position2 low_centre = grid.geometry.centre_of(low);
+  const Position2 high_centre = grid.geometry.centre_of(high);
+  thing.min_corner = {low_centre.x - half, low_centre.y - half};
+  thing.max_corner = {high_centre.x + half, high_centre.y + half};
+  thing.centroid = {moments.mean_x, moments.mean_y};
+  thing.cells = static_cast<std::int32_t>(slots.size());
+  thing.points = static_cast<std::int32_t>(moments.n);
+}
+
+// Height index of every cluster, roughness where the class depends on it.
+void measure_height_and_roughness(const DescriptionParams& params, DescriptionWorkspace& workspace,
+                                  Description& description) {
+  const Clusters& clusters = description.clusters;
+  description.things.resize(clusters.size());
+  workspace.cluster_moments.resize(clusters.size());
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    ClusterDescription& thing = description.things[k];
+    Moments& moments = workspace.cluster_moments[k];
+    summarise(description.grid, clusters.slots.row(k), thing, moments);
+    thing.height = height_index(description.grid, description.ground, clusters.slots.row(k));
+    const bool needed = class_from_height(thing.height, params.classes) == TerrainClass::kNone;
+    if (needed || params.classes.all_features) {
+      thing.roughness = roughness(moments, params.roughness);
+    }
+  }
+}
+
+// Slope of the clusters whose class depends on it.
+void measure_slopes(const PointsView& points, const DescriptionParams& params,
+                    DescriptionWorkspace& workspace, Description& description) {
+  std::vector<ClusterDescription>& things = description.things;
+  workspace.wanted.assign(things.size(), 0);
+  bool any = false;
+  for (std::size_t k = 0; k < things.size(); ++k) {
+    const Roughness& measured = things[k].roughness;
+    const bool flat = measured.status == FeatureStatus::kOk && !measured.rough;
+    const bool needed =
+        flat && class_from_height(things[k].height, params.classes) == TerrainClass::kNone;
+    if (!needed && !params.classes.all_features) continue;
+    workspace.wanted[k] = 1;
+    any = true;
+  }
+  if (!any) return;
+  gather_points(workspace.point_slots, description.clusters, workspace.wanted, workspace.points_of);
+  for (std::size_t k = 0; k < things.size(); ++k) {
+    if (workspace.wanted[k] == 0) continue;
+    things[k].slope =
+        estimate_slope(points, workspace.points_of.row(k), params.slope, k, workspace.slope);
+  }
+}
+
+void classify_all(const ClassParams& params, std::vector<TerrainClass>& class_of,
+                  std::vector<ClusterDescription>& things) {
+  class_of.clear();
+  for (ClusterDescription& thing : things) {
+    thing.terrain_class = classify(thing.height, thing.roughness, thing.slope, params);
+    class_of.push_back(thing.terrain_class);
+  }
+}
+
+}  // namespace
+
+void describe(const PointsView& points, const DescriptionParams& params,
+              DescriptionWorkspace& workspace, Description& description, StageListener* listener) {
+  const auto done = [listener](Stage stage) {
+    if (listener != nullptr) listener->stage_done(stage);
+  };
+  description.projection = build_elevation_grid(points, params.grid, workspace.grid,
+                                                description.grid, workspace.point_slots);
+  done(Stage::kGrid);
+  segment_ground(description.grid, params.ground, workspace.ground,
+                 description.ground);  // (1), (2)
+  done(Stage::kGround);
+  find_clusters(description.grid, description.ground, params.clusters, workspace.clusters,
+                description.clusters);
+  done(Stage::kClusters);
+  measure_height_and_roughness(params, workspace, description);  // (3), (4)
+  done(Stage::kHeightAndRoughness);
+  measure_slopes(points, params, workspace, description);  // (5), (6)
+  done(Stage::kSlope);
+  classify_all(params.classes, workspace.class_of, description.things);  // Table 1
+  done(Stage::kClasses);
+  label_cells(description.ground, description.clusters, workspace.class_of, description.cells);
+  label_points(points, workspace.point_slots, description.cells, description.clusters,
+               params.ground, description.labels);
+  done(Stage::kLabels);
+}
+
+}  // namespace mrpt_terrain
