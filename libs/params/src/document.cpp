@@ -34,6 +34,7 @@ const Field* find_field(const Section& section, const std::string& key) {
 
 std::vector<std::string> names_of(const std::vector<Section>& sections) {
   std::vector<std::string> names;
+  names.reserve(sections.size());
   for (const Section& section : sections) names.push_back("[" + section.name + "]");
   return names;
 }

@@ -96,7 +96,7 @@ std::string to_text_degrees(double radians) {
                           ? std::chars_format::fixed
                           : std::chars_format::scientific;
   for (int decimals = 0; decimals < kMostDecimals; ++decimals) {
-    const std::string text = to_chars_text(degrees, format, decimals);
+    std::string text = to_chars_text(degrees, format, decimals);
     double read = 0.0;
     if (parse_degrees(text, read) == NumberStatus::kOk && read == radians) return text;
   }
