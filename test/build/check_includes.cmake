@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Looks for includes that cmake/layers.cmake does not allow. The compiler does not find them all:
+# the headers of OctoMap, Embree, zlib and others lie in the system's include folder.
+#   cmake -DSOURCE_FOLDER=... [-DLIBS_FOLDER=...] -P check_includes.cmake
+include(${SOURCE_FOLDER}/cmake/layers.cmake)
+if(NOT DEFINED LIBS_FOLDER)
+  set(LIBS_FOLDER ${SOURCE_FOLDER}/libs)
+endif()
+
+# What a target of the layer table lets a library include. MRPT's headers lie in one folder per
+# library, so there the compiler is strict enough.
+set(headers_of_Eigen3::Eigen "Eigen/")
+set(headers_of_PkgConfig::cairo "cairo")
+set(headers_of_nlohmann_json::nlohmann_json "nlohmann/")
+set(headers_of_ZLIB::ZLIB "zlib\\.h$")
+# Every library: C++ standard headers, which have neither folder nor extension, and the compiler's
+# vector intrinsics.
+set(headers_of_everyone "[a-z0-9_]+$|immintrin\\.h$|arm_neon\\.h$")
+
+# Regular expression of what a library may include, over all that its own layers may include.
+function(allowed_headers library result)
+  set(allowed "mrpt_terrain/${library}/")
+  foreach(used IN LISTS terrain_layer_${library})
+    if(DEFINED terrain_layer_${used})
+      allowed_headers(${used} more)
+      list(APPEND allowed ${more})
+    elseif(used MATCHES "^mrpt::")
+      list(APPEND allowed "mrpt/")
+    elseif(DEFINED headers_of_${used})
+      list(APPEND allowed ${headers_of_${used}})
+    else()
+      message(FATAL_ERROR "test/build/check_includes.cmake does not know the headers of ${used}")
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES allowed)
+  set(${result} ${allowed} PARENT_SCOPE)
+endfunction()
+
+# Appends "file:line: include" of what is not allowed to `problems`.
+function(check_file library file allowed)
+  file(STRINGS ${file} lines REGEX "^[ \t]*#[ \t]*include")
+  get_filename_component(folder ${file} DIRECTORY)
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "^[^\"<]*[\"<]([^\">]*)[\">].*$" "\\1" header "${line}")
+    set(is_private FALSE)
+    if(line MATCHES "\"" AND NOT header MATCHES "/" AND EXISTS ${folder}/${header})
+      set(is_private TRUE)
+    endif()
+    if(NOT is_private AND NOT header MATCHES "^(${allowed})")
+      file(RELATIVE_PATH name ${LIBS_FOLDER} ${file})
+      list(APPEND problems "libs/${name} includes ${header}")
+    endif()
+  endforeach()
+  set(problems "${problems}" PARENT_SCOPE)
+endfunction()
+
+set(problems)
+set(checked 0)
+file(GLOB folders LIST_DIRECTORIES true ${LIBS_FOLDER}/*)
+foreach(folder IN LISTS folders)
+  get_filename_component(library ${folder} NAME)
+  if(NOT DEFINED terrain_layer_${library})
+    list(APPEND problems "libs/${library} is not in the table of cmake/layers.cmake")
+    continue()
+  endif()
+  allowed_headers(${library} allowed)
+  list(JOIN allowed "|" allowed)
+  set(allowed "${allowed}|${headers_of_everyone}")
+  file(GLOB_RECURSE files ${folder}/*.h ${folder}/*.cpp)
+  foreach(file IN LISTS files)
+    math(EXPR checked "${checked} + 1")
+    check_file(${library} ${file} "${allowed}")
+  endforeach()
+endforeach()
+
+if(checked EQUAL 0)
+  message(FATAL_ERROR "no source file in ${LIBS_FOLDER}")
+endif()
+if(problems)
+  list(JOIN problems "\n" problems)
+  message(FATAL_ERROR "includes that cmake/layers.cmake does not allow:\n${problems}")
+endif()
+message(STATUS "${checked} files include only what their layer may use")
