@@ -11,7 +11,7 @@ usage: scripts/run.sh [RAWLOG] [OPTION...]
 Installs the missing Debian packages of packages.apt, builds terrain-rawlog, and describes the
 terrain in RAWLOG, or without RAWLOG in a scan of a VLP-16 that Debian's mrpt-common brings along.
 Results and pictures go to out/NAME beside this project's README. Every OPTION is handed to
-`terrain-rawlog process`; without any, it uses `-c params/paper_outdoor.ini --align plane`.
+`terrain-rawlog process`; without any, it uses `-c params/paper_outdoor.ini --find-ground`.
 TEXT
 }
 
@@ -54,7 +54,7 @@ main() {
 
   local options=("$@")
   if [[ $# == 0 ]]; then
-    options=(-c "$project_folder/params/paper_outdoor.ini" --align plane)
+    options=(-c "$project_folder/params/paper_outdoor.ini" --find-ground)
   fi
   local output
   output="$(chosen_output_folder "$@")"
