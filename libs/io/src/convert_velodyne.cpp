@@ -34,6 +34,7 @@ struct Decoder {
   const Velodyne& observation;
   Timing timing;
   std::size_t lasers;
+  PointSink& sink;
 
   [[nodiscard]] bool dual(const Packet& packet) const {
     return packet.laser_return_mode == Velodyne::RETMODE_DUAL;
@@ -105,26 +106,27 @@ void add_return(const mrpt::obs::VelodyneCalibration::PerLaserCalib& laser, doub
 /// \param repeats block whose returns the sensor repeats where it saw only one echo, or null
 /// \param time of the block's first firing, seconds
 void decode_block(const Decoder& decoder, const Block& block, const Block* repeats,
-                  const LaserAngles& angles, double time, PointSink& sink, std::size_t first_slot) {
+                  const LaserAngles& angles, double time, std::size_t first_slot) {
   const std::size_t bank = block.header() == Velodyne::LOWER_BANK ? kReturns : 0;
   const SinCos start = sin_cos(block.rotation() * 0.01 * kRadians);
   const std::size_t per_firing = std::min(decoder.lasers, kReturns);
   for (std::size_t k = 0; k < kReturns; ++k) {
     const auto raw = block.laser_returns[k].distance();
     if (raw == 0 || (repeats != nullptr && repeats->laser_returns[k].distance() == raw)) {
-      sink.add_no_return();
+      decoder.sink.add_no_return();
       continue;
     }
     const auto& laser =
         decoder.observation.calibration.laser_corrections[(k + bank) % decoder.lasers];
     const double distance =
         raw * static_cast<double>(Velodyne::DISTANCE_RESOLUTION) + laser.distanceCorrection;
-    if (!sink.accepts_range(distance)) continue;
+    if (!decoder.sink.accepts_range(distance)) continue;
     const SinCos azimuth{start.sin * angles[k].cos + start.cos * angles[k].sin,
                          start.cos * angles[k].cos - start.sin * angles[k].sin};
     // The lasers of a firing share its time: they start within 40 us, 1 mm at 25 m/s.
     const double firing = static_cast<double>(k / per_firing) * decoder.timing.firing * 1e-6;
-    add_return(laser, distance, azimuth, first_slot + k, static_cast<float>(time + firing), sink);
+    add_return(laser, distance, azimuth, first_slot + k, static_cast<float>(time + firing),
+               decoder.sink);
   }
 }
 
@@ -133,21 +135,20 @@ bool is_valid(const Decoder& decoder, const Block& block) {
          (block.header() == Velodyne::LOWER_BANK && decoder.lasers == 64);
 }
 
-void decode_packet(const Decoder& decoder, const Packet& packet, std::size_t first_slot,
-                   PointSink& sink) {
+void decode_packet(const Decoder& decoder, const Packet& packet, std::size_t first_slot) {
   const bool dual = decoder.dual(packet);
   const LaserAngles angles = laser_angles(decoder, packet);
   const double start = packet_time(decoder.observation, packet);
   for (std::size_t b = 0; b < kBlocks; ++b) {
     const Block& block = packet.blocks[b];
     if (!is_valid(decoder, block)) {
-      for (std::size_t k = 0; k < kReturns; ++k) sink.add_no_return();
+      for (std::size_t k = 0; k < kReturns; ++k) decoder.sink.add_no_return();
       continue;
     }
     const std::size_t firing = dual ? b / 2 : b;
     const double time = start + static_cast<double>(firing) * decoder.timing.block * 1e-6;
     const Block* repeats = dual && b % 2 == 1 ? &packet.blocks[b - 1] : nullptr;
-    decode_block(decoder, block, repeats, angles, time, sink, first_slot + b * kReturns);
+    decode_block(decoder, block, repeats, angles, time, first_slot + b * kReturns);
   }
 }
 
@@ -156,9 +157,10 @@ void decode_packets(const Velodyne& observation, const Timing& timing, const Inp
   const auto& packets = observation.scan_packets;
   PointSink sink(result, packets.size() * kBlocks * kReturns,
                  limits_of(params, observation.minRange, observation.maxRange), true);
-  const Decoder decoder{observation, timing, observation.calibration.laser_corrections.size()};
+  const Decoder decoder{observation, timing, observation.calibration.laser_corrections.size(),
+                        sink};
   for (std::size_t p = 0; p < packets.size(); ++p) {
-    decode_packet(decoder, packets[p], p * kBlocks * kReturns, sink);
+    decode_packet(decoder, packets[p], p * kBlocks * kReturns);
   }
   sink.finish();
 }
