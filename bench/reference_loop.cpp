@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "reference_loop.h"
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
 
 namespace mrpt_terrain::bench {
@@ -15,12 +15,15 @@ void reference_loop(const PointsView& points, std::vector<ReferenceCell>& grid) 
   for (std::size_t i = 0; i < points.size; ++i) {
     const float z = points.z[i];
     if (!(z < 1.5F)) continue;
-    const int l = static_cast<int>(std::floor((points.x[i] + kHalf) * kCellsPerMetre));
-    const int w = static_cast<int>(std::floor((points.y[i] + kHalf) * kCellsPerMetre));
-    if (l < 0 || l >= kReferenceCells || w < 0 || w >= kReferenceCells) continue;
-    ReferenceCell& cell = grid[static_cast<std::size_t>(l * kReferenceCells + w)];
-    if (z < cell.min) cell.min = z;
-    if (z > cell.max) cell.max = z;
+    const float l = (points.x[i] + kHalf) * kCellsPerMetre;
+    const float w = (points.y[i] + kHalf) * kCellsPerMetre;
+    // Within the range the cast is the floor; std::floor would make the loop half as fast.
+    if (!(l >= 0 && l < kReferenceCells && w >= 0 && w < kReferenceCells)) continue;
+    const int index = static_cast<int>(l) * kReferenceCells + static_cast<int>(w);
+    ReferenceCell& cell = grid[static_cast<std::size_t>(index)];
+    // Without branches: comparing and storing would make it half as fast again.
+    cell.min = std::min(cell.min, z);
+    cell.max = std::max(cell.max, z);
     cell.sum += z;
     ++cell.count;
   }

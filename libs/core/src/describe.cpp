@@ -12,7 +12,7 @@ namespace {
 void summarise(const ElevationGrid& grid, IndexRange slots, ClusterDescription& thing,
                Moments& moments) {
   thing = ClusterDescription{};
-  moments = Moments{};
+  MomentSums sums;
   const auto first = static_cast<std::size_t>(*slots.begin());
   thing.h_min = grid.h_min[first];
   thing.h_max = grid.h_max[first];
@@ -25,8 +25,9 @@ void summarise(const ElevationGrid& grid, IndexRange slots, ClusterDescription& 
     high = {std::max(high.l, cell.l), std::max(high.w, cell.w)};
     thing.h_min = std::min(thing.h_min, grid.h_min[slot]);
     thing.h_max = std::max(thing.h_max, grid.h_max[slot]);
-    moments.merge(grid.moments[slot]);
+    sums.add(grid.sums[slot]);
   }
+  moments = moments_from(sums);
   const double half = grid.geometry.cell_size() / 2;
   const Position2 low_centre = grid.geometry.centre_of(low);
   const Position2 high_centre = grid.geometry.centre_of(high);
@@ -59,7 +60,7 @@ void measure_height_and_roughness(const DescriptionParams& params, DescriptionWo
 void measure_slopes(const PointsView& points, const DescriptionParams& params,
                     DescriptionWorkspace& workspace, Description& description) {
   std::vector<ClusterDescription>& things = description.things;
-  workspace.wanted.assign(things.size(), 0);
+  workspace.points_wanted.assign(things.size(), 0);
   bool any = false;
   for (std::size_t k = 0; k < things.size(); ++k) {
     const Roughness& measured = things[k].roughness;
@@ -67,13 +68,14 @@ void measure_slopes(const PointsView& points, const DescriptionParams& params,
     const bool needed =
         flat && class_from_height(things[k].height, params.classes) == TerrainClass::kNone;
     if (!needed && !params.classes.all_features) continue;
-    workspace.wanted[k] = 1;
+    workspace.points_wanted[k] = things[k].points;
     any = true;
   }
   if (!any) return;
-  gather_points(workspace.point_slots, description.clusters, workspace.wanted, workspace.points_of);
+  gather_points(workspace.point_slots, description.clusters, workspace.points_wanted,
+                workspace.points_of);
   for (std::size_t k = 0; k < things.size(); ++k) {
-    if (workspace.wanted[k] == 0) continue;
+    if (workspace.points_wanted[k] == 0) continue;
     things[k].slope =
         estimate_slope(points, workspace.points_of.row(k), params.slope, k, workspace.slope);
   }
@@ -112,7 +114,7 @@ void describe(const PointsView& points, const DescriptionParams& params,
   done(Stage::kClasses);
   label_cells(description.ground, description.clusters, workspace.class_of, description.cells);
   label_points(points, workspace.point_slots, description.cells, description.clusters,
-               params.ground, description.labels);
+               params.ground, workspace.labels, description.labels);
   done(Stage::kLabels);
 }
 

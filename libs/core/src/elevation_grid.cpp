@@ -2,6 +2,7 @@
 #include "mrpt_terrain/core/elevation_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -21,12 +22,13 @@ void prepare(const GridParams& params, ElevationGridWorkspace& workspace, Elevat
       grid.slot_of[static_cast<std::size_t>(value_of(id))] = kUnobserved;
   }
   grid.cell.clear();
-  workspace.hit.assign(size + 8, 0);  // read eight at a time, see number_observed_cells
+  // Read eight at a time and left empty by number_observed_cells.
+  workspace.hit.resize((size + 7) / 8 * 8);
 }
 
-UnknownReason reason_for(float x, float y, float z, const GridParams& params) {
+UnknownReason reason_for(float x, float y, float z, float max_height) {
   if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) return UnknownReason::kNotFinite;
-  if (z >= params.max_height) return UnknownReason::kTooHigh;
+  if (z >= max_height) return UnknownReason::kTooHigh;
   return UnknownReason::kOutsideMap;
 }
 
@@ -44,22 +46,24 @@ void count(UnknownReason reason, ProjectionCounts& counts) {
   }
 }
 
-// Leaves the CellId of each point, or the code of its reason, in `point_slots`.
-ProjectionCounts project(const PointsView& points, const GridParams& params,
-                         const GridGeometry& geometry, std::vector<std::uint8_t>& hit,
-                         PointSlots& point_slots) {
+// Leaves the CellId of each point, or the code of its reason, in `point_slots`. Views and geometry
+// are copies so that the compiler can keep them in registers: a store to the results could change
+// what a reference leads to.
+ProjectionCounts project(const PointsView points, const GridParams& params,
+                         const GridGeometry geometry, std::uint8_t* hit,
+                         std::int32_t* point_slots) {
   constexpr float kLowest = std::numeric_limits<float>::lowest();
-  point_slots.resize(points.size);
+  const auto max_height = static_cast<float>(params.max_height);
   ProjectionCounts counts;
   for (std::size_t i = 0; i < points.size; ++i) {
     const float z = points.z[i];
     CellIndex cell;
-    if (z < params.max_height && z >= kLowest && geometry.cell_at(points.x[i], points.y[i], cell)) {
+    if (z < max_height && z >= kLowest && geometry.cell_at(points.x[i], points.y[i], cell)) {
       const std::int32_t id = value_of(geometry.id_of(cell));
-      hit[static_cast<std::size_t>(id)] = 1;
+      hit[id] = 1;
       point_slots[i] = id;
     } else {
-      const UnknownReason reason = reason_for(points.x[i], points.y[i], z, params);
+      const UnknownReason reason = reason_for(points.x[i], points.y[i], z, max_height);
       count(reason, counts);
       point_slots[i] = point_slot_of(reason);
     }
@@ -68,53 +72,72 @@ ProjectionCounts project(const PointsView& points, const GridParams& params,
   return counts;
 }
 
-// Gives the cells that were hit their slots, in the order of the cells.
-void number_observed_cells(const std::vector<std::uint8_t>& hit, ElevationGrid& grid) {
-  for (std::size_t base = 0; base + 8 <= hit.size(); base += 8) {
+// Position of the first byte in memory that is not 0. Requires one.
+std::size_t first_nonzero_byte(std::uint64_t eight) {
+#if defined(__GNUC__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+  return static_cast<std::size_t>(__builtin_ctzll(eight)) / 8;
+#else
+  std::array<std::uint8_t, 8> bytes;
+  std::memcpy(bytes.data(), &eight, 8);
+  const auto found =
+      std::find_if(bytes.begin(), bytes.end(), [](std::uint8_t b) { return b != 0; });
+  return static_cast<std::size_t>(found - bytes.begin());
+#endif
+}
+
+// Gives the cells that were hit their slots, in the order of the cells, and forgets the hits.
+void number_observed_cells(std::vector<std::uint8_t>& hit, ElevationGrid& grid) {
+  for (std::size_t base = 0; base < hit.size(); base += 8) {
     std::uint64_t eight = 0;
-    std::memcpy(&eight, &hit[base], 8);
-    if (eight == 0) continue;
-    for (std::size_t k = base; k < base + 8; ++k) {
-      if (hit[k] == 0) continue;
-      grid.slot_of[k] = static_cast<Slot>(grid.cell.size());
-      grid.cell.push_back(CellId{static_cast<std::int32_t>(k)});
+    for (std::memcpy(&eight, &hit[base], 8); eight != 0; std::memcpy(&eight, &hit[base], 8)) {
+      const std::size_t id = base + first_nonzero_byte(eight);
+      hit[id] = 0;
+      grid.slot_of[id] = static_cast<Slot>(grid.cell.size());
+      grid.cell.push_back(CellId{static_cast<std::int32_t>(id)});
     }
   }
 }
 
-// Heights and moments of the observed cells; x and y of the sums are about the cell's centre.
-void accumulate(const PointsView& points, PointSlots& point_slots,
-                ElevationGridWorkspace& workspace, ElevationGrid& grid) {
-  const std::size_t n = grid.observed();
-  workspace.centre.resize(n);
-  for (std::size_t slot = 0; slot < n; ++slot) {
-    workspace.centre[slot] = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[slot]));
-  }
-  workspace.sums.assign(n, MomentSums{});
-  grid.h_min.assign(n, std::numeric_limits<float>::max());
-  grid.h_max.assign(n, std::numeric_limits<float>::lowest());
-  for (std::size_t i = 0; i < points.size; ++i) {
-    if (point_slots[i] < 0) continue;
-    const Slot slot_number = grid.slot_of[static_cast<std::size_t>(point_slots[i])];
-    const auto slot = static_cast<std::size_t>(slot_number);
-    point_slots[i] = slot_number;
-    const float z = points.z[i];
-    grid.h_min[slot] = std::min(grid.h_min[slot], z);
-    grid.h_max[slot] = std::max(grid.h_max[slot], z);
-    const Position2 centre = workspace.centre[slot];
-    workspace.sums[slot].add(points.x[i] - centre.x, points.y[i] - centre.y, z);
+void replace_cells_by_slots(const Slot* slot_of, PointSlots& point_slots) {
+  for (std::int32_t& point_slot : point_slots) {
+    if (point_slot >= 0) point_slot = slot_of[point_slot];
   }
 }
 
-void finish(const ElevationGridWorkspace& workspace, ElevationGrid& grid) {
-  grid.h_mean.resize(grid.observed());
-  grid.moments.resize(grid.observed());
+// Fetching a cell's sums this many points ahead hides most of the way to the outer caches.
+constexpr std::size_t kPrefetchAhead = 12;
+
+void prefetch(const MomentSums& sums) {
+#if defined(__GNUC__)
+  const char* bytes = reinterpret_cast<const char*>(&sums);
+  __builtin_prefetch(bytes, 1);
+  __builtin_prefetch(bytes + sizeof(MomentSums) - 1, 1);
+#else
+  (void)sums;
+#endif
+}
+
+void accumulate(const PointsView points, const PointSlots& point_slots, ElevationGrid& grid) {
+  const std::int32_t* slots = point_slots.data();
+  MomentSums* sums = grid.sums.data();
+  float* h_min = grid.h_min.data();
+  float* h_max = grid.h_max.data();
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (i + kPrefetchAhead < points.size && slots[i + kPrefetchAhead] >= 0) {
+      prefetch(sums[slots[i + kPrefetchAhead]]);
+    }
+    const std::int32_t slot = slots[i];
+    if (slot < 0) continue;
+    const float z = points.z[i];
+    h_min[slot] = std::min(h_min[slot], z);
+    h_max[slot] = std::max(h_max[slot], z);
+    sums[slot].add(points.x[i], points.y[i], z);
+  }
+}
+
+void find_means(ElevationGrid& grid) {
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
-    Moments& moments = grid.moments[slot];
-    moments = moments_from(workspace.sums[slot]);
-    moments.mean_x += workspace.centre[slot].x;
-    moments.mean_y += workspace.centre[slot].y;
-    grid.h_mean[slot] = static_cast<float>(moments.mean_z);
+    grid.h_mean[slot] = static_cast<float>(grid.sums[slot].z / grid.sums[slot].n);
   }
 }
 
@@ -124,11 +147,17 @@ ProjectionCounts build_elevation_grid(const PointsView& points, const GridParams
                                       ElevationGridWorkspace& workspace, ElevationGrid& grid,
                                       PointSlots& point_slots) {
   prepare(params, workspace, grid);
+  point_slots.resize(points.size);
   const ProjectionCounts counts =
-      project(points, params, grid.geometry, workspace.hit, point_slots);
+      project(points, params, grid.geometry, workspace.hit.data(), point_slots.data());
   number_observed_cells(workspace.hit, grid);
-  accumulate(points, point_slots, workspace, grid);
-  finish(workspace, grid);
+  replace_cells_by_slots(grid.slot_of.data(), point_slots);
+  grid.h_min.assign(grid.observed(), std::numeric_limits<float>::max());
+  grid.h_max.assign(grid.observed(), std::numeric_limits<float>::lowest());
+  grid.h_mean.resize(grid.observed());
+  grid.sums.assign(grid.observed(), MomentSums{});
+  accumulate(points, point_slots, grid);
+  find_means(grid);
   return counts;
 }
 

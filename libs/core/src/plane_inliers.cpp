@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plane_inliers.h"
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace mrpt_terrain {
 namespace {
 
 constexpr std::size_t kBlock = 512;
+// Sine of the smallest angle at which three points still span a plane.
+constexpr float kLeastSine = 1e-4F;
 
 std::int32_t count_range(const PointsView& cloud, std::size_t begin, std::size_t end,
                          const Plane& plane, float tolerance) {
@@ -17,6 +21,25 @@ std::int32_t count_range(const PointsView& cloud, std::size_t begin, std::size_t
 }
 
 }  // namespace
+
+std::optional<Plane> random_plane(const PointsView& cloud, RandomGenerator& random) {
+  const auto n = static_cast<std::uint32_t>(cloud.size);
+  const std::uint32_t i1 = random.below(n);
+  std::uint32_t i2 = random.below(n - 1);
+  if (i2 >= i1) ++i2;
+  std::uint32_t i3 = random.below(n - 2);
+  if (i3 >= std::min(i1, i2)) ++i3;
+  if (i3 >= std::max(i1, i2)) ++i3;
+
+  const Eigen::Vector3f p1(cloud.x[i1], cloud.y[i1], cloud.z[i1]);
+  const Eigen::Vector3f u = Eigen::Vector3f(cloud.x[i2], cloud.y[i2], cloud.z[i2]) - p1;
+  const Eigen::Vector3f v = Eigen::Vector3f(cloud.x[i3], cloud.y[i3], cloud.z[i3]) - p1;
+  const Eigen::Vector3f normal = u.cross(v);
+  const float length = normal.norm();
+  if (!(length > kLeastSine * u.norm() * v.norm())) return std::nullopt;
+  const Eigen::Vector3f unit = normal / length;
+  return Plane{unit.x(), unit.y(), unit.z(), -unit.dot(p1)};
+}
 
 std::int32_t count_inliers(const PointsView& cloud, const Plane& plane, float tolerance,
                            std::int32_t to_beat) {

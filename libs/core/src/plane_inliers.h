@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "mrpt_terrain/core/points.h"
+#include "mrpt_terrain/core/random.h"
 
 namespace mrpt_terrain {
 
@@ -12,6 +14,10 @@ namespace mrpt_terrain {
 struct Plane {
   float a, b, c, d;
 };
+
+/// Plane through three random points of different index; nothing if the three are on one line.
+/// Requires at least three points.
+[[nodiscard]] std::optional<Plane> random_plane(const PointsView& cloud, RandomGenerator& random);
 
 /// Distance of point `i` from the plane at most `tolerance`, metres.
 inline bool is_inlier(const PointsView& cloud, std::size_t i, const Plane& plane, float tolerance) {

@@ -14,8 +14,6 @@
 namespace mrpt_terrain {
 namespace {
 
-// Sine of the smallest angle at which three points still span a plane.
-constexpr float kLeastSine = 1e-4F;
 // Singular values below this share of the greatest count as zero.
 constexpr double kRankTolerance = 1e-9;
 
@@ -42,26 +40,6 @@ void load(const PointsView& points, IndexRange members, const Eigen::Vector3d& c
     workspace.z[k] = static_cast<float>(points.z[i] - centre.z());
     ++k;
   }
-}
-
-// Plane through three points of different index; nothing if they are on one line.
-std::optional<Plane> random_plane(const PointsView& cloud, RandomGenerator& random) {
-  const auto n = static_cast<std::uint32_t>(cloud.size);
-  const std::uint32_t i1 = random.below(n);
-  std::uint32_t i2 = random.below(n - 1);
-  if (i2 >= i1) ++i2;
-  std::uint32_t i3 = random.below(n - 2);
-  if (i3 >= std::min(i1, i2)) ++i3;
-  if (i3 >= std::max(i1, i2)) ++i3;
-
-  const Eigen::Vector3f p1(cloud.x[i1], cloud.y[i1], cloud.z[i1]);
-  const Eigen::Vector3f u = Eigen::Vector3f(cloud.x[i2], cloud.y[i2], cloud.z[i2]) - p1;
-  const Eigen::Vector3f v = Eigen::Vector3f(cloud.x[i3], cloud.y[i3], cloud.z[i3]) - p1;
-  const Eigen::Vector3f normal = u.cross(v);
-  const float length = normal.norm();
-  if (!(length > kLeastSine * u.norm() * v.norm())) return std::nullopt;
-  const Eigen::Vector3f unit = normal / length;
-  return Plane{unit.x(), unit.y(), unit.z(), -unit.dot(p1)};
 }
 
 struct Consensus {

@@ -51,10 +51,19 @@ struct Clusters {
   [[nodiscard]] std::size_t size() const { return slots.rows(); }
 };
 
+/// Non-ground cells that lie side by side in one row; their slots are consecutive too.
+struct CellRun {
+  std::int32_t first_id;
+  std::int32_t last_id;
+  Slot first_slot;
+  std::int32_t parent;  ///< another run of the same group, or itself
+};
+
 /// Scratch memory of `find_clusters`.
 struct ClusterWorkspace {
-  std::vector<std::int32_t> parent;         ///< per slot: union-find
-  std::vector<std::int32_t> cells_of_root;  ///< per slot: size of the group it is the first of
+  std::vector<CellRun> runs;
+  std::vector<std::int32_t> cells_of_root;  ///< per run: cells of the group whose first run it is
+  std::vector<std::int32_t> cluster_of_root;
 };
 
 /// Flood fill over the non-ground cells, connected in eight directions (paper, section "Grids
@@ -63,9 +72,9 @@ void find_clusters(const ElevationGrid& grid, const GroundSegmentation& ground,
                    const ClusterParams& params, ClusterWorkspace& workspace, Clusters& result);
 
 /// Merges the points of the wanted clusters: per cluster the indices of its points, ascending.
-/// \param wanted per cluster: 0 leaves its row empty
+/// \param points_wanted per cluster: how many points it has, or 0 to leave its row empty
 /// \param[out] rows one row per cluster
 void gather_points(const PointSlots& point_slots, const Clusters& clusters,
-                   const std::vector<std::uint8_t>& wanted, IndexRows& rows);
+                   const std::vector<std::int32_t>& points_wanted, IndexRows& rows);
 
 }  // namespace mrpt_terrain

@@ -10,6 +10,7 @@
 #include "mrpt_terrain/core/elevation_grid.h"
 #include "mrpt_terrain/core/ground.h"
 #include "mrpt_terrain/core/height_index.h"
+#include "mrpt_terrain/core/label_stage.h"
 #include "mrpt_terrain/core/labels.h"
 #include "mrpt_terrain/core/roughness.h"
 #include "mrpt_terrain/core/slope.h"
@@ -98,9 +99,10 @@ struct DescriptionWorkspace {
   GroundWorkspace ground;
   ClusterWorkspace clusters;
   SlopeWorkspace slope;
+  LabelWorkspace labels;
   PointSlots point_slots;
   std::vector<Moments> cluster_moments;
-  std::vector<std::uint8_t> wanted;
+  std::vector<std::int32_t> points_wanted;
   std::vector<TerrainClass> class_of;
   IndexRows points_of;
 };

@@ -47,7 +47,7 @@ struct ElevationGrid {
   std::vector<float> h_min;      ///< per slot: smallest height
   std::vector<float> h_max;      ///< per slot: greatest height
   std::vector<float> h_mean;     ///< per slot: mean height
-  std::vector<Moments> moments;  ///< per slot: number, mean and scatter of the points
+  std::vector<MomentSums> sums;  ///< per slot: what covariances need, about the frame's origin
 
   /// Number of observed cells.
   [[nodiscard]] std::size_t observed() const { return cell.size(); }
@@ -57,6 +57,8 @@ struct ElevationGrid {
                ? slot_of[static_cast<std::size_t>(value_of(geometry.id_of(index)))]
                : kUnobserved;
   }
+  /// Number, mean and scatter of the points of a slot.
+  [[nodiscard]] Moments moments(std::size_t slot) const { return moments_from(sums[slot]); }
   /// h_diff of the paper: h_max - h_min of a slot.
   [[nodiscard]] float h_diff(std::size_t slot) const { return h_max[slot] - h_min[slot]; }
 };
@@ -79,11 +81,9 @@ using PointSlots = std::vector<std::int32_t>;
   return point_slot >= 0 ? UnknownReason::kNone : static_cast<UnknownReason>(-1 - point_slot);
 }
 
-/// Scratch memory of `build_elevation_grid`; holds nothing that matters between calls.
+/// Scratch memory of `build_elevation_grid`; empty of any scan between calls.
 struct ElevationGridWorkspace {
   std::vector<std::uint8_t> hit;  ///< per CellId: a point fell into it
-  std::vector<Position2> centre;  ///< per slot
-  std::vector<MomentSums> sums;   ///< per slot
 };
 
 /// Projects points into the grid (paper, section "Elevation grid map") and gathers the heights and

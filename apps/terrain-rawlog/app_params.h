@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <utility>
+
+#include "mrpt_terrain/core/describe.h"
+#include "mrpt_terrain/core/ground_plane.h"
+#include "mrpt_terrain/io/scan.h"
+
+/// Everything that the configuration file of terrain-rawlog holds.
+struct AppParams {
+  mrpt_terrain::DescriptionParams description;
+  mrpt_terrain::io::InputParams input;
+  mrpt_terrain::GroundPlaneParams ground_plane;
+
+  template <class Self, class Visitor>
+  static void visit_sections(Self& self, Visitor&& visit) {
+    mrpt_terrain::DescriptionParams::visit_sections(self.description, visit);
+    visit(self.input, "input", "How observations become points");
+    visit(self.ground_plane, "ground_plane",
+          "Search for the ground when the sensor's pose is unknown (--find-ground)");
+  }
+};

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input_support.h"
+
+#include <mrpt/core/bits_math.h>
+#include <mrpt/img/CImage.h>
+#include <mrpt/io/lazy_load_path.h>
+#include <mrpt/obs/CRawlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "mrpt_terrain/params/data_files.h"
+#include "mrpt_terrain/view/text.h"
+
+using mrpt::poses::CPose3D;
+
+CPose3D parse_pose(const std::string& text) {
+  std::string plain = text;
+  std::replace_if(
+      plain.begin(), plain.end(), [](char c) { return c == '[' || c == ']' || c == ','; }, ' ');
+  std::istringstream stream(plain);
+  std::vector<double> v;
+  for (double number = 0; stream >> number;) v.push_back(number);
+  const bool finite = std::all_of(v.begin(), v.end(), [](double d) { return std::isfinite(d); });
+  if (!stream.eof() || !finite || (v.size() != 3 && v.size() != 6)) {
+    throw std::invalid_argument("\"" + text +
+                                "\" is no pose: give \"x y z\" or \"x y z yaw pitch roll\" in "
+                                "metres and degrees");
+  }
+  v.resize(6, 0.0);
+  return {v[0], v[1], v[2], mrpt::DEG2RAD(v[3]), mrpt::DEG2RAD(v[4]), mrpt::DEG2RAD(v[5])};
+}
+
+std::string pose_text(const CPose3D& pose) {
+  std::string text;
+  for (const double metres : {pose.x(), pose.y(), pose.z()}) {
+    text += mrpt_terrain::view::fixed(metres, 3) + " ";
+  }
+  for (const double angle : {pose.yaw(), pose.pitch(), pose.roll()}) {
+    text += mrpt_terrain::view::fixed(mrpt::RAD2DEG(angle), 2) + " ";
+  }
+  text.pop_back();
+  return text;
+}
+
+void set_externals_dir(const std::string& given, const std::string& rawlog) {
+  const std::string folder =
+      given.empty() ? mrpt::obs::CRawlog::detectImagesDirectory(rawlog) : given;
+  mrpt::io::setLazyLoadPathBase(folder);
+  mrpt::img::CImage::setImagesPathBase(folder);
+}
+
+mrpt_terrain::io::SensorModels load_sensor_models() {
+  const auto folder = mrpt_terrain::params::find_data_folder() / "params" / "sensors";
+  return mrpt_terrain::io::SensorModels::from_folder(folder.string());
+}

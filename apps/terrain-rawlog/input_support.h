@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <mrpt/poses/CPose3D.h>
+
+#include <string>
+
+#include "mrpt_terrain/io/sensor_model.h"
+
+/// Pose from "x y z yaw pitch roll" (metres, degrees; commas and MRPT's brackets allowed; "x y z"
+/// alone is a pose without rotation). Throws std::invalid_argument with the form it wants.
+[[nodiscard]] mrpt::poses::CPose3D parse_pose(const std::string& text);
+
+/// The same form, for messages.
+[[nodiscard]] std::string pose_text(const mrpt::poses::CPose3D& pose);
+
+/// Tells MRPT where the externally stored data of a rawlog are: the given folder, or the one that
+/// rawlog tools use for that file.
+void set_externals_dir(const std::string& given, const std::string& rawlog);
+
+/// The beam tables that come with the project.
+[[nodiscard]] mrpt_terrain::io::SensorModels load_sensor_models();

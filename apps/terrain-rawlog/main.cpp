@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <map>
+
+#include "app_params.h"
+#include "exit_code.h"
+#include "mrpt_terrain/params/ini.h"
+#include "options.h"
+#include "stop_signal.h"
+
+namespace {
+
+const std::map<std::string, Verbosity> kVerbosities = {{"ERROR", Verbosity::kError},
+                                                       {"WARN", Verbosity::kWarn},
+                                                       {"INFO", Verbosity::kInfo},
+                                                       {"DEBUG", Verbosity::kDebug}};
+
+void add_verbosity(CLI::App& command, Verbosity& verbosity) {
+  command.add_option("-v,--verbosity", verbosity, "ERROR, WARN, INFO or DEBUG")
+      ->transform(CLI::CheckedTransformer(kVerbosities, CLI::ignore_case).description(""))
+      ->type_name("LEVEL");
+  command.add_flag_callback(
+      "-q,--quiet", [&verbosity] { verbosity = Verbosity::kError; }, "Print errors only");
+}
+
+void add_process(CLI::App& app, ProcessOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("process", "Describe the scans of rawlogs or simple maps");
+  command.add_option("inputs", options.inputs, "Files: .rawlog or .simplemap, also gzipped")
+      ->required()
+      ->type_name("IN...");
+  command
+      .add_option("-c,--config", options.config, "Parameters (.ini); see --print-default-config")
+      ->type_name("FILE");
+  command.add_option("--set", options.settings, "One parameter, after the file; may be repeated")
+      ->type_name("SECTION.KEY=VALUE")
+      ->allow_extra_args(false);
+  command.add_option("-o,--output-dir", options.output_dir, "Folder for all results")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command
+      .add_option("--every", options.every,
+                  "Pictures, scenes and clouds of every N-th scan (default: first, worst, last)")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber.description(""));
+  Selection& selection = options.selection;
+  command
+      .add_option("--sensor-label", selection.sensor_label,
+                  "Only observations whose whole label matches")
+      ->type_name("REGEX");
+  command.add_option("--from-index", selection.from_index, "First entry of each input")
+      ->type_name("N");
+  command.add_option("--to-index", selection.to_index, "Last entry of each input")->type_name("N");
+  command.add_option("--only-first-n", selection.only_first_n, "Stop after N scans")
+      ->type_name("N");
+  command.add_option("--poses", options.poses, "Poses of the robot, instead of the rawlog's own")
+      ->type_name("FILE.tum");
+  command
+      .add_option("--sensor-pose", options.sensor_pose,
+                  "Sensor on the robot, instead of the observations' own: \"x y z yaw pitch "
+                  "roll\" in m and deg; z = 0 of the robot is on the ground")
+      ->type_name("POSE");
+  command.add_flag("--find-ground", options.find_ground,
+                   "Find height and tilt of the sensor in the first scan that shows the ground");
+  command
+      .add_option("--externals-dir", options.externals_dir,
+                  "Folder of externally stored data (default: as rawlog tools find it)")
+      ->type_name("DIR");
+  command.add_option("--table-rows", options.table_rows, "Clusters per printed table")
+      ->type_name("N")
+      ->capture_default_str();
+  add_verbosity(command, options.verbosity);
+}
+
+void add_info(CLI::App& app, InfoOptions& options) {
+  CLI::App& command = *app.add_subcommand("info", "Say what files hold and what can be described");
+  command.add_option("inputs", options.inputs, "Files: .rawlog or .simplemap, also gzipped")
+      ->required()
+      ->type_name("IN...");
+  command.add_option("--externals-dir", options.externals_dir, "Folder of externally stored data")
+      ->type_name("DIR");
+}
+
+void add_import(CLI::App& app, ImportCommandOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("import", "Make a rawlog of a KITTI folder or of PCD or PLY files");
+  command.add_option("inputs", options.inputs, "One KITTI / SemanticKITTI folder, or point clouds")
+      ->required()
+      ->type_name("IN...");
+  command
+      .add_option("-o,--output", options.output, "Rawlog to write; poses and labels go beside it")
+      ->required()
+      ->type_name("OUT.rawlog");
+  command.add_option("--format", options.format, "kitti, pcd or ply (default: by the inputs)")
+      ->check(CLI::IsMember({"kitti", "pcd", "ply"}).description(""))
+      ->type_name("NAME");
+  command
+      .add_option("--sensor-pose", options.sensor_pose,
+                  "Sensor on the robot: \"x y z yaw pitch roll\" in m and deg, such as "
+                  "\"0 0 1.73\"")
+      ->type_name("POSE");
+  command.add_option("--sensor-label", options.sensor_label, "Label of the observations")
+      ->capture_default_str();
+  command.add_option("--period", options.period, "Seconds between scans without time stamps")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber.description(""));
+  command.add_option("--only-first-n", options.only_first_n, "Stop after N scans")->type_name("N");
+  add_verbosity(command, options.verbosity);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Terrain out of recorded range data: heights, ground, obstacles, potholes, slopes.",
+               "terrain-rawlog");
+  app.footer(
+      "Exit codes: 0 all well; 2 command line or configuration wrong; 3 an input is missing or\n"
+      "damaged (results up to there are written); 4 not all scans could be used as asked; 5 "
+      "output\n"
+      "cannot be written; 130 interrupted (results up to there are written).");
+  app.set_version_flag("--version", "terrain-rawlog " MRPT_TERRAIN_VERSION);
+  bool print_config = false;
+  app.add_flag("--print-default-config", print_config, "Print all parameters with their defaults");
+  app.require_subcommand(0, 1);
+  ProcessOptions process;
+  InfoOptions info;
+  ImportCommandOptions import;
+  add_process(app, process);
+  add_info(app, info);
+  add_import(app, import);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitOk : kExitUsage;
+  }
+  if (print_config) {
+    std::cout << mrpt_terrain::params::dump_ini(AppParams{});
+    return kExitOk;
+  }
+  if (app.got_subcommand("process")) return run_process(process);
+  if (app.got_subcommand("info")) return run_info(info);
+  if (app.got_subcommand("import")) return run_import(import);
+  std::cout << app.help();
+  return kExitUsage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  install_stop_signals();
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "error: " << error.what() << "\n";
+    return kExitOutput;
+  }
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "outputs.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+
+#include "mrpt_terrain/io/ply.h"
+#include "mrpt_terrain/params/ini.h"
+#include "mrpt_terrain/view/csv.h"
+#include "mrpt_terrain/view/scene.h"
+#include "mrpt_terrain/view/top_view.h"
+
+namespace {
+
+using namespace mrpt_terrain;
+
+void write_text(const std::string& file, const std::string& text) {
+  io::WholeFile whole(file);
+  whole.stream() << text;
+  whole.commit();
+}
+
+std::string made_folder(std::string folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw std::runtime_error(folder + ": cannot be made: " +
+                             (error ? error.message() : "there is something else of that name"));
+  }
+  return folder;
+}
+
+std::string scan_name(std::size_t index) {
+  std::array<char, 32> name{};
+  std::snprintf(name.data(), name.size(), "scan_%06zu", index);
+  return name.data();
+}
+
+}  // namespace
+
+Outputs::Outputs(std::string folder, const AppParams& params)
+    : folder_(made_folder(std::move(folder))),
+      params_(params.description),
+      clusters_(folder_ + "/clusters.csv"),
+      scans_(folder_ + "/scans.csv") {
+  view::write_clusters_csv_header(clusters_.stream());
+  view::write_scans_csv_header(scans_.stream());
+  write_text(folder_ + "/params.ini", params::dump_ini(params));
+}
+
+void Outputs::add_rows(const view::ScanRecord& record, const Description& description) {
+  view::write_clusters_csv(clusters_.stream(), record, description);
+  view::write_scans_csv(scans_.stream(), record);
+  if (!clusters_.stream().flush() || !scans_.stream().flush()) {
+    throw std::runtime_error(folder_ + ": the tables cannot be written (is the disk full?)");
+  }
+}
+
+void Outputs::write_views(const view::ScanRecord& record, const Points& points,
+                          const Description& description, const std::string& why) {
+  const std::string stem = folder_ + "/" + scan_name(record.index);
+  views_.push_back(why + ": " + stem + ".png");
+  if (std::find(drawn_.begin(), drawn_.end(), record.index) != drawn_.end()) return;
+  drawn_.push_back(record.index);
+  view::TopViewOptions options;
+  options.source = record.file;
+  options.scan_index = record.index;
+  options.stamp = record.stamp;
+  options.params = params_;
+  view::write_top_view(stem + ".png", description, options);
+  view::write_scene(stem + ".3Dscene", description, points.view());
+  io::write_labelled_ply(stem + ".ply", points.view(), description.labels);
+}
+
+void Outputs::finish(const view::RunSummary& summary) {
+  clusters_.commit();
+  scans_.commit();
+  write_text(folder_ + "/summary.json", view::summary_json(summary));
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mrpt_terrain/io/whole_file.h"
+#include "mrpt_terrain/view/run_summary.h"
+#include "mrpt_terrain/view/scan_record.h"
+#include "scan_pipeline.h"
+
+/// A described scan that waits to be drawn.
+struct DrawableScan {
+  mrpt_terrain::view::ScanRecord record;
+  mrpt_terrain::Points points;
+  mrpt_terrain::Description description;
+};
+
+/// The folder with everything that `process` writes. Tables grow while the run goes on and get
+/// their names in `finish`; views appear one by one.
+class Outputs {
+ public:
+  /// Makes the folder. Throws std::runtime_error if it cannot be written to.
+  Outputs(std::string folder, const AppParams& params);
+
+  void add_rows(const mrpt_terrain::view::ScanRecord& record,
+                const mrpt_terrain::Description& description);
+  /// Writes `scan_NNNNNN.png`, `.3Dscene` and `.ply`, once per scan; `why` is for the user.
+  void write_views(const mrpt_terrain::view::ScanRecord& record, const mrpt_terrain::Points& points,
+                   const mrpt_terrain::Description& description, const std::string& why);
+  /// Completes the tables and writes `summary.json`.
+  void finish(const mrpt_terrain::view::RunSummary& summary);
+
+  /// One line per view that was written, such as "first scan: out/scan_000000.png".
+  [[nodiscard]] const std::vector<std::string>& views() const { return views_; }
+  [[nodiscard]] const std::string& folder() const { return folder_; }
+
+ private:
+  std::string folder_;
+  mrpt_terrain::DescriptionParams params_;
+  mrpt_terrain::io::WholeFile clusters_;
+  mrpt_terrain::io::WholeFile scans_;
+  std::vector<std::string> views_;
+  std::vector<std::size_t> drawn_;
+};

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <mrpt/obs/CObservation.h>
+#include <mrpt/poses/CPose3D.h>
+
+#include <optional>
+
+#include "app_params.h"
+#include "mrpt_terrain/core/describe.h"
+#include "mrpt_terrain/core/ground_plane.h"
+#include "mrpt_terrain/io/scan.h"
+#include "mrpt_terrain/io/sensor_model.h"
+#include "mrpt_terrain/io/trajectory.h"
+#include "mrpt_terrain/view/scan_record.h"
+
+/// From an observation to a described scan; keeps the memory of the last one.
+struct ScanPipeline {
+  AppParams params;
+  mrpt_terrain::io::SensorModels models;
+  std::optional<mrpt::poses::CPose3D> sensor_pose;    ///< replaces that of the observations
+  std::optional<mrpt::poses::CPose3D> T_level_robot;  ///< found by `level_by_ground`
+  mrpt_terrain::io::Trajectory trajectory;            ///< of the robot; may be empty
+
+  mrpt_terrain::io::SensorPoints sensor_points;
+  mrpt_terrain::io::Scan scan;
+  mrpt_terrain::DescriptionWorkspace workspace;
+  mrpt_terrain::Description description;
+};
+
+/// Fills `pipeline.sensor_points`; its sensor pose is the one that the user gave, if there is one.
+mrpt_terrain::io::Conversion convert(const mrpt::obs::CObservation& observation,
+                                     ScanPipeline& pipeline);
+
+/// Looks for the ground in `pipeline.sensor_points`. If it is there, the robot frame of this and
+/// all further scans is tilted and lifted so that the ground is at z = 0.
+mrpt_terrain::GroundPlane level_by_ground(ScanPipeline& pipeline);
+
+/// Describes `pipeline.sensor_points` and fills counts and times of `record` (all but `io`).
+void describe_scan(ScanPipeline& pipeline, mrpt_terrain::view::ScanRecord& record);
