@@ -11,7 +11,7 @@ usage: scripts/run.sh [RAWLOG] [OPTION...]
 Installs the missing Debian packages of packages.apt, builds terrain-rawlog, and describes the
 terrain in RAWLOG, or without RAWLOG in a scan of a VLP-16 that Debian's mrpt-common brings along.
 Results and pictures go to out/NAME beside this project's README. Every OPTION is handed to
-`terrain-rawlog process`; without any, it uses `-c params/paper_outdoor.ini --align plane`.
+`terrain-rawlog process`; without any, it uses `-c params/paper_outdoor.ini --find-ground`.
 TEXT
 }
 
@@ -23,12 +23,13 @@ sample_rawlog() {
   printf '%s\n' "$file"
 }
 
-# The folder named by --output-dir among the options, or nothing.
+# The folder that the options of terrain-rawlog name, or nothing.
 chosen_output_folder() {
   while [[ $# -gt 0 ]]; do
     case "$1" in
-      --output-dir) printf '%s\n' "${2:-}"; return ;;
-      --output-dir=*) printf '%s\n' "${1#*=}"; return ;;
+      -o | --output-dir) printf '%s\n' "${2:-}" && return ;;
+      --output-dir=*) printf '%s\n' "${1#*=}" && return ;;
+      -o?*) printf '%s\n' "${1#-o}" && return ;;
     esac
     shift
   done
@@ -54,7 +55,7 @@ main() {
 
   local options=("$@")
   if [[ $# == 0 ]]; then
-    options=(-c "$project_folder/params/paper_outdoor.ini" --align plane)
+    options=(-c "$project_folder/params/paper_outdoor.ini" --find-ground)
   fi
   local output
   output="$(chosen_output_folder "$@")"
