@@ -6,37 +6,20 @@
 #include <fstream>
 #include <iostream>
 
-#include "mrpt_terrain/core/describe.h"
+#include "app_params.h"
 #include "mrpt_terrain/params/documentation.h"
 
 namespace {
 
-using mrpt_terrain::DescriptionParams;
+constexpr const char* kIntroduction = R"(# Parameters
 
-constexpr const char* kIntroduction =
-    "# Parameters\n"
-    "\n"
-    "Generated from the field lists in the headers by `terrain-parameters-doc`; CONTRIBUTING.md "
-    "says "
-    "how to make\n"
-    "it again. A parameter file is an `.ini` file with the sections below; keys that it does not "
-    "give "
-    "keep their\n"
-    "default, and unknown keys, values out of range and values that cannot be read are refused. "
-    "`params/paper.ini`\n"
-    "holds all defaults. \"In the paper\": the symbol in Meng, Cao et al. 2018. Keys that end in "
-    "`_deg` are degrees.\n"
-    "\n";
+Generated from the field lists in the headers by `terrain-parameters-doc`; CONTRIBUTING.md says how to
+make it again. A parameter file is an `.ini` file with the sections below; keys that it does not give
+keep their default, and unknown keys, values out of range and values that cannot be read are refused.
+`terrain-rawlog --print-default-config` prints a file with all of them, `params/` has some to start
+from. "In the paper": the symbol in Meng, Cao et al. 2018. Keys that end in `_deg` are degrees.
 
-/// All sections that a parameter file of the programs can have.
-struct AllParams {
-  DescriptionParams description;
-
-  template <class Self, class Visitor>
-  static void visit_sections(Self& self, Visitor&& visit) {
-    DescriptionParams::visit_sections(self.description, visit);
-  }
-};
+)";
 
 }  // namespace
 
@@ -46,7 +29,7 @@ int main(int argc, char** argv) {
     return EXIT_FAILURE;
   }
   std::ofstream file(argv[1], std::ios::binary);
-  file << kIntroduction << mrpt_terrain::params::markdown_table(AllParams{});
+  file << kIntroduction << mrpt_terrain::params::markdown_table(AppParams{});
   file.close();
   if (!file) {
     std::cerr << argv[1] << ": cannot be written\n";

@@ -23,12 +23,13 @@ sample_rawlog() {
   printf '%s\n' "$file"
 }
 
-# The folder named by --output-dir among the options, or nothing.
+# The folder that the options of terrain-rawlog name, or nothing.
 chosen_output_folder() {
   while [[ $# -gt 0 ]]; do
     case "$1" in
-      --output-dir) printf '%s\n' "${2:-}"; return ;;
-      --output-dir=*) printf '%s\n' "${1#*=}"; return ;;
+      -o | --output-dir) printf '%s\n' "${2:-}" && return ;;
+      --output-dir=*) printf '%s\n' "${1#*=}" && return ;;
+      -o?*) printf '%s\n' "${1#-o}" && return ;;
     esac
     shift
   done

@@ -8,7 +8,8 @@ function(configure_edge library used result)
     # A project without language makes no library; only the verdict on the edge matters.
     "function(add_library)\n  message(FATAL_ERROR \"edge accepted\")\nendfunction()\n"
     "terrain_library(${library} ${used})\n")
-  execute_process(COMMAND ${CMAKE_COMMAND} -S ${WORK_FOLDER} -B ${WORK_FOLDER}/build
+  execute_process(
+    COMMAND ${CMAKE_COMMAND} -G ${GENERATOR} -S ${WORK_FOLDER} -B ${WORK_FOLDER}/build
     RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE output)
   string(REGEX REPLACE "[ \n]+" " " output "${output}")
   if(status EQUAL 0)

@@ -26,14 +26,21 @@ std::string scalar_text(const yaml::node_t& node) {
   return node.as<std::string>();
 }
 
+std::string keys_wanted(const std::string& source, const std::string& section) {
+  return source + ": [" + section + "]: must be a map of keys and values";
+}
+
 SectionText read_keys(const yaml::map_t& keys, const std::string& source,
                       const std::string& section) {
   SectionText text{section, {}};
+  const std::string place = source + ": [" + section + "] ";
   for (const auto& [key, value] : keys) {
     const std::string name(key.internalAsStr());
     if (!value.isScalar() && !value.isNullNode()) {
-      throw ParameterError(source + ": [" + section + "] " + name +
-                           ": must be a single value, not a " + value.typeName());
+      throw ParameterError(std::string(place)
+                               .append(name)
+                               .append(": must be a single value, not a ")
+                               .append(value.typeName()));
     }
     text.keys.push_back({name, value.isScalar() ? scalar_text(value) : ""});
   }
@@ -152,7 +159,7 @@ Document read_yaml(const yaml& root, const std::string& source) {
     } else if (keys.isMap()) {
       document.sections.push_back(read_keys(keys.asMap(), source, section));
     } else {
-      throw ParameterError(source + ": [" + section + "]: must be a map of keys and values");
+      throw ParameterError(keys_wanted(source, section));
     }
   }
   return document;
@@ -163,7 +170,7 @@ Document read_yaml_section(const yaml& keys, const std::string& source,
   Document document{source, {}};
   if (keys.isNullNode()) return document;
   if (!keys.isMap()) {
-    throw ParameterError(source + ": [" + section + "]: must be a map of keys and values");
+    throw ParameterError(keys_wanted(source, section));
   }
   document.sections.push_back(read_keys(keys.asMap(), source, section));
   return document;
