@@ -20,6 +20,27 @@ constexpr double kRadians = M_PI / 180.0;
 constexpr std::size_t kReturns = Velodyne::SCANS_PER_BLOCK;
 constexpr std::size_t kBlocks = Velodyne::BLOCKS_PER_PACKET;
 
+/// Little-endian number at an offset. MRPT's own getters bind references to unaligned members.
+template <class Packed>
+std::uint32_t little_endian(const Packed& packed, std::size_t offset, std::size_t size) {
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(&packed) + offset;
+  std::uint32_t value = 0;
+  for (std::size_t k = 0; k < size; ++k) value |= std::uint32_t{bytes[k]} << (8 * k);
+  return value;
+}
+
+std::uint32_t header_of(const Block& block) { return little_endian(block, 0, 2); }
+/// Hundredths of a degree.
+int rotation_of(const Block& block) { return static_cast<int>(little_endian(block, 2, 2)); }
+/// Units of 2 mm; 0: no return.
+std::uint32_t distance_of(const Block& block, std::size_t k) {
+  return little_endian(block.laser_returns[k], 0, 2);
+}
+/// Microseconds since the full hour.
+std::uint32_t time_of(const Packet& packet) {
+  return little_endian(packet, kBlocks * sizeof(Block), 4);
+}
+
 /// Microseconds between the starts of two lasers, firings and blocks (Velodyne's user manuals of
 /// VLP-16 and HDL-32E). The HDL-64E's depend on its firmware; its packets count as instants.
 struct Timing {
@@ -51,8 +72,8 @@ SinCos sin_cos(double angle) { return {std::sin(angle), std::cos(angle)}; }
 /// Seconds from the first packet to this one; the sensor's counter restarts every hour.
 double packet_time(const Velodyne& observation, const Packet& packet) {
   constexpr std::int64_t kHour = 3'600'000'000;
-  const std::int64_t first = observation.scan_packets.front().gps_timestamp();
-  std::int64_t micros = static_cast<std::int64_t>(packet.gps_timestamp()) - first;
+  const std::int64_t first = time_of(observation.scan_packets.front());
+  std::int64_t micros = static_cast<std::int64_t>(time_of(packet)) - first;
   if (micros < 0) micros += kHour;
   return static_cast<double>(micros) * 1e-6;
 }
@@ -63,7 +84,7 @@ double turn_per_block(const Packet& packet, std::size_t blocks_per_azimuth) {
   std::array<int, kBlocks> steps{};
   const std::size_t n = kBlocks - blocks_per_azimuth;
   for (std::size_t b = 0; b < n; ++b) {
-    steps[b] = (packet.blocks[b + blocks_per_azimuth].rotation() - packet.blocks[b].rotation() +
+    steps[b] = (rotation_of(packet.blocks[b + blocks_per_azimuth]) - rotation_of(packet.blocks[b]) +
                 Velodyne::ROTATION_MAX_UNITS) %
                Velodyne::ROTATION_MAX_UNITS;
   }
@@ -107,12 +128,12 @@ void add_return(const mrpt::obs::VelodyneCalibration::PerLaserCalib& laser, doub
 /// \param time of the block's first firing, seconds
 void decode_block(const Decoder& decoder, const Block& block, const Block* repeats,
                   const LaserAngles& angles, double time, std::size_t first_slot) {
-  const std::size_t bank = block.header() == Velodyne::LOWER_BANK ? kReturns : 0;
-  const SinCos start = sin_cos(block.rotation() * 0.01 * kRadians);
+  const std::size_t bank = header_of(block) == Velodyne::LOWER_BANK ? kReturns : 0;
+  const SinCos start = sin_cos(rotation_of(block) * 0.01 * kRadians);
   const std::size_t per_firing = std::min(decoder.lasers, kReturns);
   for (std::size_t k = 0; k < kReturns; ++k) {
-    const auto raw = block.laser_returns[k].distance();
-    if (raw == 0 || (repeats != nullptr && repeats->laser_returns[k].distance() == raw)) {
+    const std::uint32_t raw = distance_of(block, k);
+    if (raw == 0 || (repeats != nullptr && distance_of(*repeats, k) == raw)) {
       decoder.sink.add_no_return();
       continue;
     }
@@ -131,8 +152,8 @@ void decode_block(const Decoder& decoder, const Block& block, const Block* repea
 }
 
 bool is_valid(const Decoder& decoder, const Block& block) {
-  return block.header() == Velodyne::UPPER_BANK ||
-         (block.header() == Velodyne::LOWER_BANK && decoder.lasers == 64);
+  return header_of(block) == Velodyne::UPPER_BANK ||
+         (header_of(block) == Velodyne::LOWER_BANK && decoder.lasers == 64);
 }
 
 void decode_packet(const Decoder& decoder, const Packet& packet, std::size_t first_slot) {

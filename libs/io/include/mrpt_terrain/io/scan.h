@@ -50,8 +50,8 @@ struct ReturnCounts {
 /// Points of one observation in the sensor's own frame.
 struct SensorPoints {
   Points points;
-  /// Per point: seconds after the observation's time stamp (may be negative); empty where the
-  /// sensor does not give it.
+  /// Per point: seconds after the observation's time stamp (finite, may be negative); empty where
+  /// the sensor does not give it.
   std::vector<float> time;
   /// Per point: its place in the sensor's own order (all slots counted, zero returns and invalid
   /// rays included), so that labels and predictions can be put beside the original data.
