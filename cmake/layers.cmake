@@ -4,7 +4,8 @@
 set(terrain_layer_core "Eigen3::Eigen")
 set(terrain_layer_params "core" "mrpt::config" "mrpt::containers")
 set(terrain_layer_io "core" "params" "mrpt::obs" "mrpt::maps" "mrpt::io" "mrpt::containers" "ZLIB::ZLIB")
-set(terrain_layer_view "core" "mrpt::opengl" "PkgConfig::cairo")
+set(terrain_layer_view "core" "mrpt::opengl" "PkgConfig::cairo" "nlohmann_json::nlohmann_json"
+  "ZLIB::ZLIB")
 set(terrain_layer_eval "core" "params" "io")
 
 # terrain_library(NAME USES target... [PRIVATE_USES target...])

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mrpt_terrain/core/describe.h"
+#include "mrpt_terrain/view/palette.h"
+#include "mrpt_terrain/view/raster.h"
+
+namespace mrpt_terrain::view {
+
+/// What a cell is in a picture. Where several cells share a pixel the greatest one shows, so that
+/// small dangerous things do not vanish.
+enum class CellKind : std::uint8_t {
+  kUnobserved = 0,
+  kGround,
+  kDropped,  ///< non-ground, but in no cluster
+  kOther,
+  kSlope,
+  kObstacle,
+  kPothole,
+};
+[[nodiscard]] Rgb colour_of(CellKind kind);
+
+/// Kind of every observed cell; index: slot.
+[[nodiscard]] std::vector<CellKind> cell_kinds(const Description& description);
+
+/// The whole grid as kinds, drawn into width x height pixels: x forward is up, y left is left.
+[[nodiscard]] Raster<CellKind> kind_raster(const Description& description, int width, int height);
+
+/// Mean heights of the cells the same way, metres; NaN where no cell of the pixel is observed, the
+/// mean where several share it.
+[[nodiscard]] Raster<float> height_raster(const ElevationGrid& grid, int width, int height);
+
+/// Heights that a colour scale spans, metres.
+struct HeightRange {
+  double low = 0.0;      ///< the first colour
+  double high = 0.0;     ///< the last colour
+  double lowest = 0.0;   ///< of all cells
+  double highest = 0.0;  ///< of all cells
+  bool empty = true;     ///< no cell is observed; the numbers mean nothing
+};
+
+/// Range of the cells' mean heights without the lowest and the highest `share` of them, so that one
+/// wild point does not take the colours of all others. At least 0.1 m, about the same middle.
+[[nodiscard]] HeightRange robust_range(const ElevationGrid& grid, double share = 0.02);
+
+}  // namespace mrpt_terrain::view

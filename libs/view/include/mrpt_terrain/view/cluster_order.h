@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "mrpt_terrain/core/describe.h"
+
+namespace mrpt_terrain::view {
+
+/// Numbers of the clusters with the most cells, largest first; of equal ones the lower number
+/// first. Tables, pictures and scenes show these when they cannot show all.
+/// \param at_most length of the result if there are that many clusters
+[[nodiscard]] std::vector<std::size_t> largest_clusters(const Description& description,
+                                                        std::size_t at_most);
+
+}  // namespace mrpt_terrain::view

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "mrpt_terrain/core/describe.h"
+
+namespace mrpt_terrain::view {
+
+/// What a top view says beside the description, and how large it is.
+struct TopViewOptions {
+  std::string source;           ///< file that the scan came from; its base name is shown
+  std::size_t scan_index = 0;   ///< number of the scan in its run
+  double stamp = 0.0;           ///< seconds since the Unix epoch or the start of the data set
+  DescriptionParams params;     ///< those of the description, for the footer
+  int max_width = 1600;         ///< of the picture, pixels
+  int max_height = 920;         ///< of the picture, pixels
+  std::size_t max_labels = 25;  ///< clusters that get their number, the largest first
+};
+
+/// Writes a PNG with two views of the description from above, x forward up and y left left: mean
+/// heights of the cells with their scale, and classes of the clusters with their numbers; the robot
+/// at the origin, a metric grid, a scale bar, a legend with counts, and the parameters.
+///
+/// The file appears as a whole or not at all. Throws std::runtime_error "FILE: cannot be written:
+/// reason".
+void write_top_view(const std::string& file, const Description& description,
+                    const TopViewOptions& options);
+
+}  // namespace mrpt_terrain::view

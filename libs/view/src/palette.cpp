@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/view/palette.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace mrpt_terrain::view {
+namespace {
+
+// Points at equal distances (CIE 1976 Lab) along a curve of rising lightness.
+constexpr std::array<Rgb, 11> kHeightColours{{{56, 31, 89},
+                                              {5, 60, 128},
+                                              {5, 80, 128},
+                                              {4, 109, 139},
+                                              {8, 139, 150},
+                                              {5, 165, 152},
+                                              {44, 186, 141},
+                                              {96, 203, 122},
+                                              {146, 216, 101},
+                                              {195, 225, 83},
+                                              {243, 230, 70}}};
+
+std::uint8_t mix(std::uint8_t a, std::uint8_t b, double share_of_b) {
+  return static_cast<std::uint8_t>(std::lround(a + (b - a) * share_of_b));
+}
+
+}  // namespace
+
+Rgb colour_of(TerrainClass terrain_class) {
+  switch (terrain_class) {
+    case TerrainClass::kSlope:
+      return kSlopeColour;
+    case TerrainClass::kPothole:
+      return kPotholeColour;
+    case TerrainClass::kObstacle:
+      return kObstacleColour;
+    case TerrainClass::kOther:
+      return kOtherColour;
+    case TerrainClass::kNone:
+      break;
+  }
+  return kDroppedColour;
+}
+
+Rgb colour_of(Support support) {
+  switch (support) {
+    case Support::kGround:
+      return kGroundColour;
+    case Support::kUnknown:
+      return kUnknownColour;
+    case Support::kAbove:
+    case Support::kBelow:
+      break;
+  }
+  return kDroppedColour;
+}
+
+Rgb colour_of(TerrainClass terrain_class, Support support) {
+  return terrain_class == TerrainClass::kNone ? colour_of(support) : colour_of(terrain_class);
+}
+
+Rgb height_colour(double t) {
+  const double place = std::clamp(t, 0.0, 1.0) * (kHeightColours.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(place), kHeightColours.size() - 2);
+  const double share = place - static_cast<double>(k);
+  const Rgb a = kHeightColours[k];
+  const Rgb b = kHeightColours[k + 1];
+  return {mix(a.r, b.r, share), mix(a.g, b.g, share), mix(a.b, b.b, share)};
+}
+
+}  // namespace mrpt_terrain::view

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/view/csv.h"
+
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "description_builder.h"
+
+namespace mrpt_terrain::view {
+namespace {
+
+/// Reads RFC 4180: per record its fields.
+std::vector<std::vector<std::string>> parse(const std::string& text) {
+  std::vector<std::vector<std::string>> records{{""}};
+  bool quoted = false;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (quoted && c == '"' && k + 1 < text.size() && text[k + 1] == '"') {
+      records.back().back() += text[++k];
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (!quoted && c == ',') {
+      records.back().emplace_back();
+    } else if (!quoted && c == '\n') {
+      records.push_back({""});
+    } else {
+      records.back().back() += c;
+    }
+  }
+  EXPECT_EQ(records.back(), std::vector<std::string>{""}) << "the last line has no end";
+  records.pop_back();
+  return records;
+}
+
+/// Records after the header as maps from column name to field.
+std::vector<std::map<std::string, std::string>> rows_of(const std::string& text) {
+  const auto records = parse(text);
+  std::vector<std::map<std::string, std::string>> rows;
+  for (std::size_t k = 1; k < records.size(); ++k) {
+    EXPECT_EQ(records[k].size(), records[0].size());
+    rows.emplace_back();
+    for (std::size_t column = 0; column < records[0].size(); ++column) {
+      EXPECT_TRUE(rows.back().emplace(records[0][column], records[k].at(column)).second)
+          << "two columns are called " << records[0][column];
+    }
+  }
+  return rows;
+}
+
+double number(const std::string& text) {
+  std::istringstream in(text);
+  in.imbue(std::locale::classic());
+  double value = std::numeric_limits<double>::quiet_NaN();
+  in >> value;
+  return value;
+}
+
+Description two_clusters() {
+  test::DescriptionBuilder builder(10.0, 10.0, 0.1);
+  builder.cluster(TerrainClass::kSlope, {60, 40}, {69, 45}, 0.15F, 0.6F);
+  auto& slope = builder.last();
+  slope.height = {0.45, 1.0 / 3.0, 0.45};
+  slope.roughness = {FeatureStatus::kOk, true, {{1e-7, 0.2, 0.9}}};
+  slope.slope.status = FeatureStatus::kOk;
+  slope.slope.angle = 0.5;
+  slope.slope.normal = {0.1, -0.2, 0.97};
+  slope.slope.inliers = 55;
+  slope.slope.iterations = 12;
+  builder.cluster(TerrainClass::kPothole, {5, 15}, {5, 15}, -0.3F, -0.2F);
+  builder.last().roughness.lambda[0] = std::numeric_limits<double>::quiet_NaN();
+  return builder.build();
+}
+
+ScanRecord some_scan() {
+  ScanRecord scan;
+  scan.file = "a \"b\", c\nd.rawlog";
+  scan.entry = 17;
+  scan.index = 3;
+  scan.stamp = 1317042136.0825;
+  scan.sensor_label = "LIDAR,front";
+  scan.left_out = {11, 12, 13};
+  scan.counts = count(two_clusters());
+  scan.milliseconds.io = 0.1;
+  scan.milliseconds.stage[static_cast<std::size_t>(Stage::kSlope)] = 2.25;
+  scan.milliseconds.total = 1.0 / 3.0;
+  return scan;
+}
+
+std::string clusters_csv() {
+  std::ostringstream out;
+  write_clusters_csv_header(out);
+  write_clusters_csv(out, some_scan(), two_clusters());
+  return out.str();
+}
+
+std::string scans_csv() {
+  std::ostringstream out;
+  write_scans_csv_header(out);
+  write_scans_csv(out, some_scan());
+  return out.str();
+}
+
+TEST(Csv, ClustersReadBackExactly) {
+  const auto rows = rows_of(clusters_csv());
+  ASSERT_EQ(rows.size(), 2U);
+  const auto& row = rows[0];
+  EXPECT_EQ(row.at("scan"), "3");
+  EXPECT_EQ(number(row.at("stamp")), 1317042136.0825);
+  EXPECT_EQ(row.at("cluster"), "0");
+  EXPECT_EQ(row.at("class"), "slope");
+  EXPECT_EQ(number(row.at("h_m")), 1.0 / 3.0);
+  EXPECT_EQ(row.at("h_min"), "0.15");
+  EXPECT_EQ(number(row.at("lambda_0")), 1e-7);
+  EXPECT_EQ(row.at("rough"), "1");
+  EXPECT_DOUBLE_EQ(number(row.at("angle_deg")), 28.64788975654116);
+  EXPECT_EQ(number(row.at("normal_y")), -0.2);
+  EXPECT_EQ(row.at("inliers"), "55");
+  EXPECT_EQ(row.at("iterations"), "12");
+  EXPECT_EQ(row.at("cells"), "60");
+  EXPECT_NEAR(number(row.at("min_x")), 1.0, 1e-9);
+  EXPECT_NEAR(number(row.at("max_y")), -0.4, 1e-9);
+}
+
+TEST(Csv, FeaturesThatWereNotComputedAreEmptyAndNeverNaN) {
+  const auto rows = rows_of(clusters_csv());
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[1].at("roughness_status"), "not_needed");
+  EXPECT_EQ(rows[1].at("slope_status"), "not_needed");
+  for (const char* column : {"rough", "lambda_0", "lambda_1", "lambda_2", "angle_deg", "normal_x",
+                             "normal_y", "normal_z", "inliers", "iterations"}) {
+    EXPECT_EQ(rows[1].at(column), "") << column;
+  }
+  EXPECT_EQ(clusters_csv().find("nan"), std::string::npos);
+}
+
+TEST(Csv, ScansReadBackWithQuotedText) {
+  const auto rows = rows_of(scans_csv());
+  ASSERT_EQ(rows.size(), 1U);
+  const auto& row = rows[0];
+  EXPECT_EQ(row.at("file"), some_scan().file);
+  EXPECT_EQ(row.at("sensor_label"), "LIDAR,front");
+  EXPECT_EQ(row.at("entry"), "17");
+  EXPECT_EQ(row.at("scan"), "3");
+  EXPECT_EQ(row.at("left_out_no_return"), "11");
+  EXPECT_EQ(row.at("left_out_out_of_range"), "13");
+  EXPECT_EQ(row.at("points"), "61");
+  EXPECT_EQ(row.at("points_too_high"), "0");
+  EXPECT_EQ(row.at("points_above"), "60");
+  EXPECT_EQ(row.at("points_below"), "1");
+  EXPECT_EQ(row.at("cells_non_ground"), "61");
+  EXPECT_EQ(row.at("clusters_slope"), "1");
+  EXPECT_EQ(row.at("clusters_pothole"), "1");
+  EXPECT_EQ(row.at("clusters_obstacle"), "0");
+  EXPECT_EQ(row.at("ms_slope"), "2.25");
+  EXPECT_EQ(number(row.at("ms_total")), 1.0 / 3.0);
+}
+
+TEST(Csv, TheLocaleDoesNotMatter) {
+  const std::string expected = clusters_csv() + scans_csv();
+  struct CommaForDecimals : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  const std::locale before =
+      std::locale::global(std::locale(std::locale::classic(), new CommaForDecimals));
+  const std::string actual = clusters_csv() + scans_csv();
+  std::locale::global(before);
+  EXPECT_EQ(actual, expected);
+}
+
+}  // namespace
+}  // namespace mrpt_terrain::view
