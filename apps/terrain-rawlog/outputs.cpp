@@ -62,9 +62,12 @@ void Outputs::add_rows(const view::ScanRecord& record, const Description& descri
 void Outputs::write_views(const view::ScanRecord& record, const Points& points,
                           const Description& description, const std::string& why) {
   const std::string stem = folder_ + "/" + scan_name(record.index);
-  views_.push_back(why + ": " + stem + ".png");
-  if (std::find(drawn_.begin(), drawn_.end(), record.index) != drawn_.end()) return;
-  drawn_.push_back(record.index);
+  for (View& view : views_) {
+    if (view.picture != stem + ".png") continue;
+    view.why += " and " + why;
+    return;
+  }
+  views_.push_back({why, stem + ".png"});
   view::TopViewOptions options;
   options.source = record.file;
   options.scan_index = record.index;

@@ -17,6 +17,12 @@ struct DrawableScan {
   mrpt_terrain::Description description;
 };
 
+/// A scan that was drawn.
+struct View {
+  std::string why;  ///< such as "first scan"
+  std::string picture;
+};
+
 /// The folder with everything that `process` writes. Tables grow while the run goes on and get
 /// their names in `finish`; views appear one by one.
 class Outputs {
@@ -32,8 +38,7 @@ class Outputs {
   /// Completes the tables and writes `summary.json`.
   void finish(const mrpt_terrain::view::RunSummary& summary);
 
-  /// One line per view that was written, such as "first scan: out/scan_000000.png".
-  [[nodiscard]] const std::vector<std::string>& views() const { return views_; }
+  [[nodiscard]] const std::vector<View>& views() const { return views_; }
   [[nodiscard]] const std::string& folder() const { return folder_; }
 
  private:
@@ -41,6 +46,5 @@ class Outputs {
   mrpt_terrain::DescriptionParams params_;
   mrpt_terrain::io::WholeFile clusters_;
   mrpt_terrain::io::WholeFile scans_;
-  std::vector<std::string> views_;
-  std::vector<std::size_t> drawn_;
+  std::vector<View> views_;
 };

@@ -3,6 +3,7 @@
 #include <mrpt/core/bits_math.h>
 
 #include <chrono>
+#include <map>
 #include <memory>
 #include <regex>
 #include <stdexcept>
@@ -43,6 +44,7 @@ struct Run {
   double worst_share = -1.0;
   view::ScanRecord last;
   std::size_t without_pose = 0;
+  std::map<std::string, std::size_t> no_geometry;  ///< observations that never have points
   int exit_code = kExitOk;
 
   Run(const ProcessOptions& given, const AppParams& params)
@@ -164,6 +166,19 @@ void find_ground(const std::string& place, Run& run) {
       "\" (give it with --sensor-pose to fix it)\n\n");
 }
 
+// Observations that never have points are part of most rawlogs; the others should have been used.
+void skip(const std::string& place, const io::Conversion& conversion, Run& run) {
+  if (conversion.status == io::ConversionStatus::kNoGeometry) {
+    ++run.no_geometry[conversion.reason];
+    return;
+  }
+  const std::string reason = std::string(name_of(conversion.status)) + ": " + conversion.reason;
+  if (++run.summary.scans_skipped[reason] == 1) {
+    run.messages.warn(place + ": " + conversion.reason);
+  }
+  run.incomplete();
+}
+
 void process_observation(const std::string& file, const io::ReadObservation& read, double io_ms,
                          Run& run) {
   const mrpt::obs::CObservation& observation = *read.observation;
@@ -175,12 +190,7 @@ void process_observation(const std::string& file, const io::ReadObservation& rea
   const std::string place = file + ": entry " + std::to_string(read.entry);
   const io::Conversion conversion = convert(observation, run.pipeline);
   if (conversion.status != io::ConversionStatus::kOk) {
-    const std::string reason = std::string(name_of(conversion.status)) + ": " + conversion.reason;
-    if (++run.summary.scans_skipped[reason] == 1 &&
-        conversion.status != io::ConversionStatus::kNoGeometry) {
-      run.messages.warn(place + ": " + conversion.reason);
-      run.incomplete();
-    }
+    skip(place, conversion, run);
     return;
   }
   if (read.T_map_robot) {
@@ -254,9 +264,9 @@ void write_last_views(Run& run) {
                           "last scan");
 }
 
-std::string skipped_text(const view::RunSummary& summary) {
+std::string counts_text(const std::map<std::string, std::size_t>& counts) {
   std::string text;
-  for (const auto& [reason, count] : summary.scans_skipped) {
+  for (const auto& [reason, count] : counts) {
     text += "  " + std::to_string(count) + " x " + view::printable(reason) + "\n";
   }
   return text;
@@ -265,12 +275,17 @@ std::string skipped_text(const view::RunSummary& summary) {
 void report(Run& run, double wall_seconds) {
   std::string text = std::to_string(run.summary.scans_processed) + " scans described in " +
                      view::fixed(wall_seconds, 2) + " s\n";
-  if (!run.summary.scans_skipped.empty()) text += "not described:\n" + skipped_text(run.summary);
-  for (const std::string& line : run.outputs.views()) text += line + "\n";
-  text += "tables, scenes, configuration: " + run.outputs.folder() + "\n";
+  if (!run.summary.scans_skipped.empty())
+    text += "not described:\n" + counts_text(run.summary.scans_skipped);
+  for (const View& view : run.outputs.views()) text += view.why + ": " + view.picture + "\n";
+  text += "tables, scenes, clouds, configuration: " + run.outputs.folder() + "\n";
   run.messages.info(text);
+  if (!run.no_geometry.empty()) {
+    run.messages.debug("observations without geometry:\n" + counts_text(run.no_geometry));
+  }
   if (run.summary.scans_processed == 0 && run.exit_code != kExitInput) {
-    run.messages.error("no scan was described\n" + skipped_text(run.summary));
+    run.messages.error("no scan was described\n" + counts_text(run.summary.scans_skipped) +
+                       counts_text(run.no_geometry));
     run.incomplete();
   }
   if (run.without_pose > 1) {
