@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # terrain_library() must stop the configuration at a dependency that its table does not allow.
 function(configure_edge library used result)
+  file(REMOVE_RECURSE ${WORK_FOLDER})
   file(WRITE ${WORK_FOLDER}/CMakeLists.txt
     "cmake_minimum_required(VERSION 3.22)\n"
     "project(edge LANGUAGES NONE)\n"
