@@ -5,7 +5,7 @@ function(configure_edge library used result)
   file(WRITE ${WORK_FOLDER}/CMakeLists.txt
     "cmake_minimum_required(VERSION 3.22)\n"
     "project(edge LANGUAGES NONE)\n"
-    "include(${SOURCE_FOLDER}/cmake/layers.cmake)\n"
+    "include(\"${SOURCE_FOLDER}/cmake/layers.cmake\")\n"
     # A project without language makes no library; only the verdict on the edge matters.
     "function(add_library)\n  message(FATAL_ERROR \"edge accepted\")\nendfunction()\n"
     "terrain_library(${library} ${used})\n")
