@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # terrain_library() must stop the configuration at a dependency that its table does not allow.
 function(configure_edge library used result)
+  file(REMOVE_RECURSE ${WORK_FOLDER})
   file(WRITE ${WORK_FOLDER}/CMakeLists.txt
     "cmake_minimum_required(VERSION 3.22)\n"
     "project(edge LANGUAGES NONE)\n"
-    "include(${SOURCE_FOLDER}/cmake/layers.cmake)\n"
+    "include(\"${SOURCE_FOLDER}/cmake/layers.cmake\")\n"
     # A project without language makes no library; only the verdict on the edge matters.
     "function(add_library)\n  message(FATAL_ERROR \"edge accepted\")\nendfunction()\n"
     "terrain_library(${library} ${used})\n")
