@@ -3,7 +3,7 @@
 # stands here (regular expressions over target names). doc/tour.md explains the order.
 set(terrain_layer_core "Eigen3::Eigen")
 set(terrain_layer_params "core" "mrpt::config" "mrpt::containers")
-set(terrain_layer_io "core" "params" "mrpt::obs" "mrpt::maps" "mrpt::io" "mrpt::containers")
+set(terrain_layer_io "core" "params" "mrpt::obs" "mrpt::maps" "mrpt::io" "mrpt::containers" "ZLIB::ZLIB")
 set(terrain_layer_view "core" "mrpt::opengl" "PkgConfig::cairo")
 set(terrain_layer_eval "core" "params" "io")
 

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "mrpt_terrain/io/import_writer.h"
+#include "mrpt_terrain/io/observation_reader.h"
+#include "mrpt_terrain/io/pcd.h"
+#include "mrpt_terrain/io/ply.h"
+
+namespace mrpt_terrain::io {
+namespace {
+
+ImportSummary import_files(const std::vector<std::string>& files, const ImportOptions& options,
+                           const std::string& rawlog, FileCloud (*read)(const std::string&)) {
+  if (files.empty()) throw ReadError(rawlog + ": there are no files to import");
+  const std::size_t total =
+      options.max_scans == 0 ? files.size() : std::min(files.size(), options.max_scans);
+  ImportWriter writer(rawlog, options);
+  for (std::size_t k = 0; k < total; ++k) {
+    if (options.progress && !options.progress(k, total)) {
+      ImportSummary stopped;
+      stopped.stopped = true;
+      return stopped;
+    }
+    writer.add(read(files[k]), static_cast<double>(k) * options.period, std::nullopt);
+  }
+  return writer.commit();
+}
+
+}  // namespace
+
+ImportSummary import_pcd(const std::vector<std::string>& files, const ImportOptions& options,
+                         const std::string& rawlog) {
+  return import_files(files, options, rawlog, read_pcd);
+}
+
+ImportSummary import_ply(const std::vector<std::string>& files, const ImportOptions& options,
+                         const std::string& rawlog) {
+  return import_files(files, options, rawlog, read_ply);
+}
+
+}  // namespace mrpt_terrain::io
