@@ -36,8 +36,9 @@ class Trajectory {
 };
 
 /// Reads a TUM file: lines `stamp tx ty tz qx qy qz qw`, `#` starts a comment.
-/// Throws `std::runtime_error` "file:line: what is wrong" for anything else, also for an empty file.
-/// \param T_robot_sensor of the sensor whose poses the file lists; identity for poses of the robot
+/// Throws `std::runtime_error` "file:line: what is wrong" for anything else, also for an empty
+/// file. \param T_robot_sensor of the sensor whose poses the file lists; identity for poses of the
+/// robot
 [[nodiscard]] Trajectory load_tum(const std::string& file,
                                   const mrpt::poses::CPose3D& T_robot_sensor = {});
 
