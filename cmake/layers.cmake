@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The layers of the project: a folder is a library is a target, and a library may use only what
-# stands here (regular expressions over target names). doc/tour.md explains the order.
+# stands here.
+set(terrain_layer_files "")
 set(terrain_layer_core "Eigen3::Eigen")
 set(terrain_layer_params "core" "mrpt::config" "mrpt::containers")
-set(terrain_layer_io "core" "params" "mrpt::obs" "mrpt::maps" "mrpt::io" "mrpt::containers" "ZLIB::ZLIB")
-set(terrain_layer_view "core" "mrpt::opengl" "PkgConfig::cairo" "nlohmann_json::nlohmann_json"
+set(terrain_layer_io "core" "files" "params" "mrpt::obs" "mrpt::maps" "mrpt::io" "mrpt::containers" "ZLIB::ZLIB")
+set(terrain_layer_view "core" "files" "mrpt::opengl" "PkgConfig::cairo" "nlohmann_json::nlohmann_json"
   "ZLIB::ZLIB")
 set(terrain_layer_eval "core" "params" "io")
 

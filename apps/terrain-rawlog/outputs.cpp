@@ -7,21 +7,17 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "mrpt_terrain/files/atomic_file.h"
 #include "mrpt_terrain/io/ply.h"
 #include "mrpt_terrain/params/ini.h"
 #include "mrpt_terrain/view/csv.h"
+#include "mrpt_terrain/view/palette.h"
 #include "mrpt_terrain/view/scene.h"
 #include "mrpt_terrain/view/top_view.h"
 
 namespace {
 
 using namespace mrpt_terrain;
-
-void write_text(const std::string& file, const std::string& text) {
-  io::WholeFile whole(file);
-  whole.stream() << text;
-  whole.commit();
-}
 
 std::string made_folder(std::string folder) {
   std::error_code error;
@@ -48,7 +44,7 @@ Outputs::Outputs(std::string folder, const AppParams& params)
       scans_(folder_ + "/scans.csv") {
   view::write_clusters_csv_header(clusters_.stream());
   view::write_scans_csv_header(scans_.stream());
-  write_text(folder_ + "/params.ini", params::dump_ini(params));
+  files::write_atomically(folder_ + "/params.ini", params::dump_ini(params));
 }
 
 void Outputs::add_rows(const view::ScanRecord& record, const Description& description) {
@@ -75,11 +71,15 @@ void Outputs::write_views(const view::ScanRecord& record, const Points& points,
   options.params = params_;
   view::write_top_view(stem + ".png", description, options);
   view::write_scene(stem + ".3Dscene", description, points.view());
-  io::write_labelled_ply(stem + ".ply", points.view(), description.labels);
+  io::write_labelled_ply(stem + ".ply", points.view(), description.labels,
+                         [](Support support, TerrainClass terrain_class) {
+                           const view::Rgb colour = view::colour_of(terrain_class, support);
+                           return io::PointColor{colour.r, colour.g, colour.b};
+                         });
 }
 
 void Outputs::finish(const view::RunSummary& summary) {
   clusters_.commit();
   scans_.commit();
-  write_text(folder_ + "/summary.json", view::summary_json(summary));
+  files::write_atomically(folder_ + "/summary.json", view::summary_json(summary));
 }

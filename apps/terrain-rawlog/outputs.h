@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mrpt_terrain/io/whole_file.h"
+#include "mrpt_terrain/files/whole_file.h"
 #include "mrpt_terrain/view/run_summary.h"
 #include "mrpt_terrain/view/scan_record.h"
 #include "scan_pipeline.h"
@@ -44,7 +44,7 @@ class Outputs {
  private:
   std::string folder_;
   mrpt_terrain::DescriptionParams params_;
-  mrpt_terrain::io::WholeFile clusters_;
-  mrpt_terrain::io::WholeFile scans_;
+  mrpt_terrain::files::WholeFile clusters_;
+  mrpt_terrain::files::WholeFile scans_;
   std::vector<View> views_;
 };

@@ -115,19 +115,5 @@ TEST(Ply, LabelledPlyIsLiteral) {
   EXPECT_EQ(cloud.points.z[0], 5.0f);
 }
 
-TEST(Ply, ColoursTellAllClassesApart) {
-  std::vector<std::uint32_t> colors;
-  const auto add = [&](Support support, TerrainClass terrain_class) {
-    const PointColor c = default_point_color(support, terrain_class);
-    colors.push_back(static_cast<std::uint32_t>((c.red << 16) | (c.green << 8) | c.blue));
-  };
-  for (const auto& [value, name] : enum_names(TerrainClass{})) add(Support::kAbove, value);
-  add(Support::kUnknown, TerrainClass::kNone);
-  add(Support::kGround, TerrainClass::kNone);
-  add(Support::kBelow, TerrainClass::kNone);
-  std::sort(colors.begin(), colors.end());
-  EXPECT_EQ(std::adjacent_find(colors.begin(), colors.end()), colors.end());
-}
-
 }  // namespace
 }  // namespace mrpt_terrain::io

@@ -14,7 +14,7 @@
 #include "mrpt_terrain/io/label_file.h"
 #include "mrpt_terrain/io/rawlog_writer.h"
 #include "mrpt_terrain/io/trajectory.h"
-#include "mrpt_terrain/io/whole_file.h"
+#include "mrpt_terrain/files/whole_file.h"
 
 namespace mrpt_terrain::io {
 namespace {
@@ -127,7 +127,7 @@ struct ImportWriter::Impl {
 
   const ImportOptions options;
   RawlogWriter rawlog;
-  WholeFile tum;
+  files::WholeFile tum;
   LabelsFolder labels;
   Trajectory poses;
   ImportSummary summary;

@@ -2,7 +2,7 @@
 #include "mrpt_terrain/io/label_file.h"
 
 #include "file_bytes.h"
-#include "mrpt_terrain/io/whole_file.h"
+#include "mrpt_terrain/files/whole_file.h"
 
 namespace mrpt_terrain::io {
 
@@ -32,7 +32,7 @@ void write_labels(const std::string& file, const std::vector<std::uint32_t>& lab
   for (const std::uint32_t label : labels) {
     for (unsigned k = 0; k < 4; ++k) bytes.push_back(static_cast<char>((label >> (8 * k)) & 0xFFu));
   }
-  WholeFile whole(file);
+  files::WholeFile whole(file);
   whole.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   whole.commit();
 }

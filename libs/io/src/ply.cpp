@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "file_bytes.h"
-#include "mrpt_terrain/io/whole_file.h"
+#include "mrpt_terrain/files/whole_file.h"
 
 namespace mrpt_terrain::io {
 namespace {
@@ -279,32 +279,6 @@ FileCloud read_ply(const std::string& file) {
   return read_body(header, BinaryBody(file, header, bytes));
 }
 
-PointColor default_point_color(Support support, TerrainClass terrain_class) {
-  switch (terrain_class) {
-    case TerrainClass::kObstacle:
-      return {214, 39, 40};
-    case TerrainClass::kSlope:
-      return {31, 119, 220};
-    case TerrainClass::kPothole:
-      return {200, 0, 200};
-    case TerrainClass::kOther:
-      return {230, 200, 40};
-    case TerrainClass::kNone:
-      break;
-  }
-  switch (support) {
-    case Support::kGround:
-      return {130, 150, 125};
-    case Support::kAbove:
-      return {190, 150, 110};
-    case Support::kBelow:
-      return {95, 60, 130};
-    case Support::kUnknown:
-      break;
-  }
-  return {160, 160, 160};
-}
-
 void write_labelled_ply(const std::string& file, PointsView points, const PointLabels& labels,
                         const PointPalette& palette) {
   assert(labels.support.size() == points.size && labels.terrain_class.size() == points.size &&
@@ -324,7 +298,7 @@ void write_labelled_ply(const std::string& file, PointsView points, const PointL
     append(bytes, color.green);
     append(bytes, color.blue);
   }
-  WholeFile whole(file);
+  files::WholeFile whole(file);
   whole.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   whole.commit();
 }

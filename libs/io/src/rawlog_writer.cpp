@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mrpt_terrain/io/whole_file.h"
+#include "mrpt_terrain/files/whole_file.h"
 
 namespace mrpt_terrain::io {
 namespace {
@@ -60,7 +60,7 @@ class GzipArchive : public mrpt::serialization::CArchive {
 
 struct RawlogWriter::Impl {
   explicit Impl(const std::string& file) : whole(file), archive(whole.part(), file) {}
-  WholeFile whole;
+  files::WholeFile whole;
   GzipArchive archive;
 };
 

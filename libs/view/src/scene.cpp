@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "mrpt_terrain/view/atomic_file.h"
+#include "mrpt_terrain/files/atomic_file.h"
 #include "mrpt_terrain/view/cell_raster.h"
 #include "mrpt_terrain/view/cluster_order.h"
 #include "mrpt_terrain/view/palette.h"
@@ -209,7 +209,7 @@ mrpt::opengl::COpenGLScene::Ptr make_scene(const Description& description, const
 
 void write_scene(const std::string& file, const Description& description, const PointsView& points,
                  const SceneOptions& options) {
-  write_atomically(file, [&](const std::string& part_file) {
+  files::write_atomically(file, [&](const std::string& part_file) {
     const auto scene = make_scene(description, points, options);
     if (!scene->saveToFile(part_file)) throw std::runtime_error("the scene could not be stored");
   });

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "canvas.h"
-#include "mrpt_terrain/view/atomic_file.h"
+#include "mrpt_terrain/files/atomic_file.h"
 #include "mrpt_terrain/view/cell_raster.h"
 #include "mrpt_terrain/view/cluster_order.h"
 #include "mrpt_terrain/view/label_placement.h"
@@ -442,7 +442,7 @@ void write_top_view(const std::string& file, const Description& description,
   draw_heights(canvas, layout, description);
   draw_classes(canvas, layout, description, options.max_labels);
   draw_footer(canvas, layout, options.params);
-  write_atomically(file, png_bytes(canvas.pixels()));
+  files::write_atomically(file, png_bytes(canvas.pixels()));
 }
 
 }  // namespace mrpt_terrain::view

@@ -20,17 +20,14 @@ namespace mrpt_terrain::io {
 struct PointColor {
   std::uint8_t red = 0, green = 0, blue = 0;
 };
+/// Colour of a point by its labels; libs/view has the one that all pictures use.
 using PointPalette = std::function<PointColor(Support, TerrainClass)>;
-
-/// Obstacle red, slope blue, pothole magenta, other yellow; without a class ground grey-green,
-/// above light brown, below dark violet, unknown grey.
-[[nodiscard]] PointColor default_point_color(Support support, TerrainClass terrain_class);
 
 /// Writes points with their labels as binary little-endian PLY, whole or not at all: x, y, z
 /// (float); support, class (uchar, values of the enumerations); cluster (int, -1: none); red,
 /// green, blue (uchar). Throws std::runtime_error when the file cannot be written. \param labels of
 /// the same length as the points
 void write_labelled_ply(const std::string& file, PointsView points, const PointLabels& labels,
-                        const PointPalette& palette = default_point_color);
+                        const PointPalette& palette);
 
 }  // namespace mrpt_terrain::io

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-namespace mrpt_terrain::io {
+namespace mrpt_terrain::files {
 
 /// A file that appears under its name only when it is complete: it is written as `<name>.part` and
 /// renamed by `commit`. Without `commit` the part is removed and an older file of that name stays.
@@ -31,4 +31,4 @@ class WholeFile {
   bool committed_ = false;
 };
 
-}  // namespace mrpt_terrain::io
+}  // namespace mrpt_terrain::files

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mrpt_terrain/io/whole_file.h"
+#include "mrpt_terrain/files/whole_file.h"
 
 #include "test_files.h"
 
-namespace mrpt_terrain::io {
+namespace mrpt_terrain::files {
 namespace {
 
 using namespace mrpt_terrain::test;
@@ -48,4 +48,4 @@ TEST(WholeFile, AFullDiskIsNoticed) {
 }
 
 }  // namespace
-}  // namespace mrpt_terrain::io
+}  // namespace mrpt_terrain::files

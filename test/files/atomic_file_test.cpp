@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mrpt_terrain/view/atomic_file.h"
+#include "mrpt_terrain/files/atomic_file.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "test_folder.h"
 
-namespace mrpt_terrain::view {
+namespace mrpt_terrain::files {
 namespace {
 
 std::string content_of(const std::string& file) {
@@ -78,4 +78,4 @@ TEST(AtomicFile, AFullDiskIsAnError) {
 }
 
 }  // namespace
-}  // namespace mrpt_terrain::view
+}  // namespace mrpt_terrain::files

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mrpt_terrain/io/whole_file.h"
+#include "mrpt_terrain/files/whole_file.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace mrpt_terrain::io {
+namespace mrpt_terrain::files {
 namespace {
 
 [[noreturn]] void fail(const std::string& file) {
@@ -41,4 +41,4 @@ void WholeFile::commit() {
   committed_ = true;
 }
 
-}  // namespace mrpt_terrain::io
+}  // namespace mrpt_terrain::files

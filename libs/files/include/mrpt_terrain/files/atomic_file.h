@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace mrpt_terrain::view {
+namespace mrpt_terrain::files {
 
 /// Writes a file so that it is there as a whole or not at all: `produce` fills a file of another
 /// name in the same folder, which then takes the place of `file`. When `produce` throws, the
@@ -20,4 +20,4 @@ void write_atomically(const std::string& file,
 /// Writes `content` the same way.
 void write_atomically(const std::string& file, std::string_view content);
 
-}  // namespace mrpt_terrain::view
+}  // namespace mrpt_terrain::files
