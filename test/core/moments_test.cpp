@@ -91,7 +91,7 @@ TEST(Moments, EqualTwoPasses) {
 // What the documentation of MomentSums promises for the clusters of a map of 1000 m.
 TEST(Moments, StayExactFarFromTheOrigin) {
   RandomGenerator random(3);
-  for (const std::size_t n : {10U, 1000U, 100000U}) {
+  for (const std::size_t n : {10U, 1000U, 10000U}) {
     for (int k = 0; k < 10; ++k) {
       const Cloud cloud = random_cloud(n, {499.0, -499.0, 1.0}, random);
       const Eigen::Matrix3d difference =

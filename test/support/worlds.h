@@ -34,7 +34,7 @@ inline void add_point(Points& points, double x, double y, double z) {
 
 /// Lattice of points over `rect`: half a spacing away from its edges, so that patches that share an
 /// edge neither overlap nor put points on the borders of cells.
-/// \param height called as height(x, y), metres
+/// \param height called as height(x, y), metres; NaN leaves the point out
 template <class Height>
 void add_surface(Points& points, const Rect& rect, double spacing, Height&& height) {
   const auto nx = static_cast<int>(std::lround((rect.x1 - rect.x0) / spacing));
@@ -43,7 +43,8 @@ void add_surface(Points& points, const Rect& rect, double spacing, Height&& heig
     for (int k = 0; k < ny; ++k) {
       const double x = rect.x0 + (i + 0.5) * spacing;
       const double y = rect.y0 + (k + 0.5) * spacing;
-      add_point(points, x, y, height(x, y));
+      const double z = height(x, y);
+      if (!std::isnan(z)) add_point(points, x, y, z);
     }
   }
 }
@@ -108,6 +109,7 @@ inline void add_heap(Points& points, const Rect& rect, double top, int n, Random
 }
 
 /// A world of 5 m x 5 m with one thing of each class, each where the constants say.
+inline constexpr double kRampAngle = radians(15.0);
 inline constexpr Rect kRampRect{1.0, 2.0, -2.0, -1.0};
 inline constexpr Rect kBoxRect{1.0, 1.4, 1.0, 1.4};
 inline constexpr Rect kPotholeRect{-1.4, -1.0, 1.0, 1.4};
@@ -115,12 +117,16 @@ inline constexpr Rect kHeapRect{-2.0, -1.4, -2.0, -1.4};
 [[nodiscard]] inline bool inside(const Rect& rect, double x, double y) {
   return x > rect.x0 && x < rect.x1 && y > rect.y0 && y < rect.y1;
 }
-[[nodiscard]] inline Points world_of_all_classes(std::uint64_t seed) {
+/// \param sigma noise of the ramp, metres
+[[nodiscard]] inline Points world_of_all_classes(std::uint64_t seed, double sigma = 0.0) {
   RandomGenerator random(seed);
   Points points;
-  add_surface(points, {-2.5, 2.5, -2.5, 2.5}, 0.025,
-              [](double x, double y) { return inside(kPotholeRect, x, y) ? -0.12 : 0.0; });
-  add_ramp(points, kRampRect, 0.025, radians(15.0), 0.0, random);
+  add_surface(points, {-2.5, 2.5, -2.5, 2.5}, 0.025, [](double x, double y) {
+    const bool covered =
+        inside(kRampRect, x, y) || inside(kBoxRect, x, y) || inside(kHeapRect, x, y);
+    return covered ? std::nan("") : (inside(kPotholeRect, x, y) ? -0.12 : 0.0);
+  });
+  add_ramp(points, kRampRect, 0.025, kRampAngle, sigma, random);
   add_box(points, kBoxRect, 0.3, 0.025);
   add_heap(points, kHeapRect, 0.5, 2000, random);
   return points;
