@@ -20,7 +20,8 @@ struct Moments {
 };
 
 /// Plain sums of the points of a set about an origin: what `Moments` are made from in one pass.
-/// In double, float coordinates up to 500 m from the origin cost a variance less than 1e-10 m^2.
+/// In double, 100,000 float coordinates up to 500 m from the origin cost a variance less than
+/// 1e-8 m^2, the square of 0.1 mm.
 struct MomentSums {
   double n = 0.0;
   double x = 0.0, y = 0.0, z = 0.0;
