@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "test_folder.h"
+#include "test_files.h"
 
 namespace mrpt_terrain::files {
 namespace {

@@ -10,7 +10,7 @@
 #include "mrpt_terrain/io/import.h"
 #include "mrpt_terrain/io/label_file.h"
 #include "mrpt_terrain/io/observation_reader.h"
-#include "test_files.h"
+#include "stored_objects.h"
 
 namespace mrpt_terrain::io {
 namespace {

@@ -13,7 +13,7 @@
 #include <mrpt/obs/CRawlog.h>
 #include <mrpt/obs/CSensoryFrame.h>
 
-#include "test_files.h"
+#include "stored_objects.h"
 
 namespace mrpt_terrain::io {
 namespace {

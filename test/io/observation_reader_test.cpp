@@ -6,7 +6,7 @@
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 
-#include "test_files.h"
+#include "stored_objects.h"
 
 namespace mrpt_terrain::io {
 namespace {

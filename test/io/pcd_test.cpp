@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "mrpt_terrain/io/observation_reader.h"
-#include "test_files.h"
+#include "stored_objects.h"
 
 namespace mrpt_terrain::io {
 namespace {

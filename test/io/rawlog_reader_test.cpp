@@ -9,7 +9,7 @@
 #include <algorithm>
 
 #include "mrpt_terrain/io/observation_reader.h"
-#include "test_files.h"
+#include "stored_objects.h"
 
 namespace mrpt_terrain::io {
 namespace {

@@ -7,7 +7,7 @@
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 
 #include "mrpt_terrain/io/observation_reader.h"
-#include "test_files.h"
+#include "stored_objects.h"
 
 namespace mrpt_terrain::io {
 namespace {

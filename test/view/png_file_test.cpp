@@ -6,7 +6,7 @@
 
 #include <fstream>
 
-#include "test_folder.h"
+#include "test_files.h"
 
 namespace mrpt_terrain::view {
 namespace {

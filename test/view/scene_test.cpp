@@ -16,7 +16,7 @@
 
 #include "description_builder.h"
 #include "mrpt_terrain/view/palette.h"
-#include "test_folder.h"
+#include "test_files.h"
 
 namespace mrpt_terrain::view {
 namespace {
