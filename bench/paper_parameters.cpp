@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sweeps the parameters that the paper does not give over simulated scenes like the paper's, and
-// prints Markdown tables for doc/paper-parameters.md. Needs no files and no arguments.
+// Sweeps the parameters that the paper does not give over simulated scenes like the paper's and
+// prints the tables of doc/paper-parameters.md.
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,16 +17,15 @@
 namespace mrpt_terrain::worlds {
 namespace {
 
-constexpr double kNoAngle = -1.0;
 constexpr std::array<double, 3> kNoise = {0.002, 0.005, 0.010};
-constexpr std::uint64_t kSeeds = 10;
+constexpr std::size_t kScans = 24;
 
 /// One thing on flat ground, all of whose solids are object 0.
 struct PaperScene {
   std::string name;
   Scene scene;
   TerrainClass expected = TerrainClass::kObstacle;
-  double angle = kNoAngle;  ///< of ramps, radians
+  double angle = 0.0;  ///< of ramps, radians
   std::vector<LidarScan> scans{};
 };
 
@@ -33,11 +33,10 @@ PaperScene ramp_scene(const std::string& name, double degrees, const std::vector
   PaperScene result{name, {}, TerrainClass::kSlope, radians(degrees)};
   const Rect rect{1.25, 2.45, -0.5, 0.5};
   result.scene.solids.push_back(ramp_solid(rect, result.angle, 0));
-  double height = 0.12;
+  double above = 0.08;
   for (const Rect& object : objects) {
-    const double below = (object.x0 - rect.x0) * std::tan(result.angle);
-    result.scene.solids.push_back(box_solid(object, 0.0, below + height, 0));
-    height += 0.04;
+    const double top = (object.x0 - rect.x0) * std::tan(result.angle) + (above += 0.04);
+    result.scene.solids.push_back(box_solid(object, 0.0, top, 0));
   }
   return result;
 }
@@ -48,56 +47,40 @@ PaperScene box_scene(const std::string& name, const Rect& rect, double top) {
   return result;
 }
 
-/// Upright blocks in disorder; their envelope rises by `steepness` like that of the paper's
-/// cluttered objects, which are close to a slope.
+/// Upright blocks in disorder whose envelope rises by `steepness`, like the paper's cluster 4.
 PaperScene heap_scene(const std::string& name, double steepness, std::uint64_t seed) {
   PaperScene result{name, {}};
   RandomGenerator random(seed);
   for (int k = 0; k < 40; ++k) {
     const double x = 1.3 + 0.8 * random.uniform();
     const double y = -0.4 + 0.7 * random.uniform();
-    const double envelope = 0.1 + steepness * (x - 1.3);
-    const double top = envelope * (0.4 + 0.9 * random.uniform());
+    const double top = (0.1 + steepness * (x - 1.3)) * (0.4 + 0.9 * random.uniform());
     result.scene.solids.push_back(box_solid({x, x + 0.1, y, y + 0.1}, 0.0, top, 0));
   }
   return result;
 }
 
 std::vector<PaperScene> paper_scenes() {
-  const Rect left{1.5, 1.65, 0.1, 0.3};
-  const Rect right{1.9, 2.05, -0.3, -0.15};
-  const Rect middle{1.7, 1.85, -0.1, 0.05};
+  const std::array<Rect, 3> on = {
+      {{1.5, 1.65, 0.1, 0.3}, {1.9, 2.05, -0.3, -0.15}, {1.7, 1.85, -0.1, 0.05}}};
   return {ramp_scene("A", 7.74, {}),
           ramp_scene("B", 13.86, {}),
           ramp_scene("C", 18.51, {}),
-          ramp_scene("A1", 7.74, {left}),
-          ramp_scene("A2", 7.74, {left, right}),
-          ramp_scene("A3", 7.74, {left, right, middle}),
+          ramp_scene("A1", 7.74, {on[0]}),
+          ramp_scene("A2", 7.74, {on[0], on[1]}),
+          ramp_scene("A3", 7.74, {on[0], on[1], on[2]}),
           box_scene("low box", {1.5, 1.9, -0.2, 0.2}, 0.15),
           box_scene("tall box", {1.5, 1.8, -0.3, 0.3}, 0.6),
           heap_scene("heap", 0.0, 1),
           heap_scene("sloping heap", 0.4, 2)};
 }
 
-/// What of a scan lies in the paper's map; the rest costs memory and changes nothing.
-LidarScan in_map(const LidarScan& all) {
-  LidarScan result;
-  for (std::size_t i = 0; i < all.points.size(); ++i) {
-    const Points& p = all.points;
-    if (std::abs(p.x[i]) > 2.5F || std::abs(p.y[i]) > 2.5F) continue;
-    result.points.push_back(p.x[i], p.y[i], p.z[i]);
-    result.object.push_back(all.object[i]);
-  }
-  return result;
-}
-
 void scan_all(std::vector<PaperScene>& scenes) {
   for (PaperScene& scene : scenes) {
-    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-      for (std::size_t k = 0; k < kNoise.size(); ++k) {
-        RandomGenerator random(seed, k);
-        scene.scans.push_back(in_map(scan(scene.scene, thirty_two_beams(kNoise[k]), random)));
-      }
+    for (std::size_t run = 0; run < kScans; ++run) {
+      RandomGenerator random(run);
+      const double noise = kNoise[run % kNoise.size()];
+      scene.scans.push_back(scan(scene.scene, thirty_two_beams(noise), random));
     }
   }
 }
@@ -106,20 +89,19 @@ void scan_all(std::vector<PaperScene>& scenes) {
 const ClusterDescription* thing_of(const Description& d, const LidarScan& scan) {
   std::vector<int> votes(d.things.size() + 1, 0);
   for (std::size_t i = 0; i < scan.object.size(); ++i) {
-    if (scan.object[i] == 0 && d.labels.cluster[i] >= 0) {
-      ++votes[static_cast<std::size_t>(d.labels.cluster[i])];
-    }
+    const std::int32_t cluster = d.labels.cluster[i];
+    if (scan.object[i] == 0 && cluster >= 0) ++votes[static_cast<std::size_t>(cluster)];
   }
   const auto most = std::max_element(votes.begin(), votes.end());
-  return *most == 0 ? nullptr : &d.things[static_cast<std::size_t>(most - votes.begin())];
+  return *most == 0 ? nullptr : d.things.data() + (most - votes.begin());
 }
 
 struct Score {
-  double correct = 0.0;  ///< share of scans with the right class
-  double bias = 0.0;     ///< of the angle, degrees
-  double spread = 0.0;   ///< standard deviation of the angle, degrees
-  double iterations = 0.0;
-  double l0 = 0.0, l1 = 0.0;  ///< greatest and least over the scans, m^2
+  double correct = 0.0;                          ///< share of scans with the right class
+  double bias = 0.0;                             ///< of the angle, degrees
+  double spread = 0.0;                           ///< standard deviation of the angle, degrees
+  double draws = 0.0;                            ///< mean number of RANSAC hypotheses
+  Eigen::Vector4d extremes{1e9, 0.0, 1e9, 1e9};  ///< least, greatest l0; least l1; least l1 / l0
 };
 
 Score score_of(const PaperScene& scene, DescriptionParams params) {
@@ -127,42 +109,39 @@ Score score_of(const PaperScene& scene, DescriptionParams params) {
   DescriptionWorkspace workspace;
   Description description;
   Score score;
-  double sum = 0.0;
   double squares = 0.0;
-  score.l1 = 1e9;
   const auto n = static_cast<double>(scene.scans.size());
   for (const LidarScan& scan : scene.scans) {
     describe(scan.points.view(), params, workspace, description);
     const ClusterDescription* thing = thing_of(description, scan);
     if (thing == nullptr) continue;
     score.correct += thing->terrain_class == scene.expected ? 1.0 / n : 0.0;
-    score.iterations += thing->slope.iterations / n;
-    score.l0 = std::max(score.l0, thing->roughness.lambda[0]);
-    score.l1 = std::min(score.l1, thing->roughness.lambda[1]);
+    score.draws += thing->slope.iterations / n;
     const double error = (thing->slope.angle - scene.angle) * 180.0 / kPi;
-    sum += error;
-    squares += error * error;
+    score.bias += error / n;
+    squares += error * error / n;
+    const auto& [l0, l1, l2] = thing->roughness.lambda;
+    Eigen::Vector4d& e = score.extremes;
+    e = {std::min(e[0], l0), std::max(e[1], l0), std::min(e[2], l1), std::min(e[3], l1 / l0)};
   }
-  score.bias = sum / n;
-  score.spread = std::sqrt(std::max(0.0, squares / n - score.bias * score.bias));
+  score.spread = std::sqrt(std::max(0.0, squares - score.bias * score.bias));
   return score;
 }
 
-using Setter = std::function<void(DescriptionParams&, double)>;
-
 void print_header(const std::string& first, const std::vector<PaperScene>& scenes) {
-  std::string head = "\n| " + first + " |";
   std::string rule = "|---|";
+  std::printf("\n| %s |", first.c_str());
   for (const PaperScene& scene : scenes) {
-    head += " " + scene.name + " |";
+    std::printf(" %s |", scene.name.c_str());
     rule += "---|";
   }
-  std::printf("%s\n%s\n", head.c_str(), rule.c_str());
+  std::printf("\n%s\n", rule.c_str());
 }
 
-/// One row per value: share of correct classes in per cent, with bias and spread of ramp angles.
+/// One row per value: per cent of correct classes; of ramps also bias, spread; mean hypotheses.
 void sweep(const std::vector<PaperScene>& scenes, const std::string& name,
-           const std::vector<double>& values, const Setter& set) {
+           const std::vector<double>& values, bool with_angles,
+           const std::function<void(DescriptionParams&, double)>& set) {
   print_header(name, scenes);
   for (const double value : values) {
     DescriptionParams params;
@@ -171,7 +150,9 @@ void sweep(const std::vector<PaperScene>& scenes, const std::string& name,
     for (const PaperScene& scene : scenes) {
       const Score score = score_of(scene, params);
       std::printf(" %.0f", 100.0 * score.correct);
-      if (scene.angle != kNoAngle) std::printf(" (%+.2f, %.2f)", score.bias, score.spread);
+      if (with_angles && scene.expected == TerrainClass::kSlope) {
+        std::printf(" (%+.2f, %.2f; %.0f)", score.bias, score.spread, score.draws);
+      }
       std::printf(" |");
     }
     std::printf("\n");
@@ -179,46 +160,41 @@ void sweep(const std::vector<PaperScene>& scenes, const std::string& name,
 }
 
 void print_eigenvalues(const std::vector<PaperScene>& scenes) {
-  print_header("default", scenes);
-  std::string l0 = "| greatest lambda_0, 1e-4 m^2 |";
-  std::string l1 = "| least lambda_1, 1e-4 m^2 |";
-  std::string draws = "| mean RANSAC iterations |";
-  for (const PaperScene& scene : scenes) {
-    const Score score = score_of(scene, {});
-    std::array<char, 32> text{};
-    const auto cell = [&text](double value) {
-      std::snprintf(text.data(), text.size(), " %.1f |", value);
-      return std::string(text.data());
-    };
-    l0 += cell(1e4 * score.l0);
-    l1 += cell(1e4 * score.l1);
-    draws += cell(score.iterations);
+  print_header("eigenvalues", scenes);
+  const std::array<const char*, 4> names = {"least l0, 1e-4 m^2", "greatest l0, 1e-4 m^2",
+                                            "least l1, 1e-4 m^2", "least l1 / l0"};
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    std::printf("| %s |", names[k]);
+    for (const PaperScene& scene : scenes) {
+      const double value = score_of(scene, {}).extremes[static_cast<Eigen::Index>(k)];
+      std::printf(" %.3g |", k < 3 ? 1e4 * value : value);
+    }
+    std::printf("\n");
   }
-  std::printf("%s\n%s\n%s\n", l0.c_str(), l1.c_str(), draws.c_str());
-}
-
-void sweep_all() {
-  std::vector<PaperScene> scenes = paper_scenes();
-  scan_all(scenes);
-  print_eigenvalues(scenes);
-  sweep(scenes, "T_ratio", {2, 5, 10, 20, 30, 50},
-        [](DescriptionParams& p, double v) { p.roughness.t_ratio = v; });
-  sweep(scenes, "T_L, m^2", {0.001, 0.005, 0.01, 0.02, 0.05},
-        [](DescriptionParams& p, double v) { p.roughness.t_l = v; });
-  sweep(scenes, "T_S, m^2", {1e-4, 2e-4, 4e-4, 8e-4, 16e-4},
-        [](DescriptionParams& p, double v) { p.roughness.t_s = v; });
-  sweep(scenes, "T_q, m", {0.005, 0.01, 0.015, 0.02, 0.03},
-        [](DescriptionParams& p, double v) { p.slope.inlier_distance = v; });
-  sweep(scenes, "T_Inlier", {0.8, 0.9, 0.95, 0.99, 1.0},
-        [](DescriptionParams& p, double v) { p.slope.inlier_share = v; });
-  sweep(scenes, "MaxIterations", {10, 100, 300, 1000, 3000},
-        [](DescriptionParams& p, double v) { p.slope.max_iterations = static_cast<int>(v); });
 }
 
 }  // namespace
 }  // namespace mrpt_terrain::worlds
 
 int main() {
-  mrpt_terrain::worlds::sweep_all();
-  return 0;
+  using namespace mrpt_terrain::worlds;
+  using Params = mrpt_terrain::DescriptionParams;
+  std::vector<PaperScene> scenes = paper_scenes();
+  scan_all(scenes);
+  print_eigenvalues(scenes);
+  sweep(scenes, "T_ratio at T_S = 16e-4", {2, 10, 20, 30, 50}, false, [](Params& p, double v) {
+    p.roughness = {v, 0.01, 16e-4, false};
+  });
+  sweep(scenes, "T_L, m^2", {0.001, 0.005, 0.01, 0.02, 0.05}, false,
+        [](Params& p, double v) { p.roughness.t_l = v; });
+  sweep(scenes, "T_S, m^2", {1e-4, 2e-4, 4e-4, 8e-4, 16e-4}, false,
+        [](Params& p, double v) { p.roughness.t_s = v; });
+  sweep(scenes, "T_q, m", {0.005, 0.01, 0.015, 0.02, 0.03}, true,
+        [](Params& p, double v) { p.slope.inlier_distance = v; });
+  sweep(scenes, "T_Inlier at T_q = 0.01", {0.8, 0.9, 0.95, 0.99, 1.0}, true,
+        [](Params& p, double v) { p.slope.inlier_distance = 0.01, p.slope.inlier_share = v; });
+  sweep(scenes, "MaxIterations at T_q = 0.01", {10, 100, 300, 1000, 3000}, true,
+        [](Params& p, double v) {
+          p.slope.inlier_distance = 0.01, p.slope.max_iterations = static_cast<int>(v);
+        });
 }

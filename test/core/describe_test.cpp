@@ -243,6 +243,40 @@ TEST(Describe, ClustersAgreeWithTheLabelsOfTheirPoints) {
   }
 }
 
+// Oracle: the features of a cluster are those of its points taken from the labels, and each cluster
+// draws random triples of its own: the stream is its number.
+TEST(Describe, FeaturesAreThoseOfTheLabelledPoints) {
+  const Points points = worlds::world_of_all_classes(110, 0.01);
+  DescriptionParams params;
+  params.classes.all_features = true;
+  params.slope.inlier_distance = 0.005;  // far from a consensus, so that the triples matter
+  const Description d = described(points, params);
+  ASSERT_GE(d.things.size(), 4U);
+  SlopeWorkspace workspace;
+  for (std::size_t k = 0; k < d.things.size(); ++k) {
+    std::vector<std::int32_t> members;
+    MomentSums sums;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (d.labels.cluster[i] != static_cast<std::int32_t>(k)) continue;
+      members.push_back(static_cast<std::int32_t>(i));
+      sums.add(points.x[i], points.y[i], points.z[i]);
+    }
+    const Slope slope =
+        estimate_slope(points.view(), {members.data(), members.data() + members.size()},
+                       params.slope, k, workspace);
+    EXPECT_EQ(d.things[k].slope.status, slope.status);
+    EXPECT_EQ(d.things[k].slope.angle, slope.angle);
+    EXPECT_EQ(d.things[k].slope.inliers, slope.inliers);
+    EXPECT_EQ(d.things[k].slope.iterations, slope.iterations);
+    // The description sums cell by cell: another order.
+    const Roughness expected = roughness(moments_from(sums), params.roughness);
+    EXPECT_EQ(d.things[k].roughness.rough, expected.rough);
+    for (std::size_t q = 0; q < 3; ++q) {
+      EXPECT_NEAR(d.things[k].roughness.lambda[q], expected.lambda[q], 1e-12);
+    }
+  }
+}
+
 /// The clusters in an order that does not depend on where they lie.
 std::vector<ClusterDescription> by_size(const Description& d) {
   std::vector<ClusterDescription> things = d.things;

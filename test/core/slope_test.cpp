@@ -178,6 +178,26 @@ TEST(PaperReading, CollinearTriplesAreRejected) {
   }
 }
 
+// The same row, with rounding: sixty points on a line, as floats never exactly, and twenty beside
+// it on one plane of 30 deg. Triples of the line would fix any plane through it, hold three
+// quarters of the points and stop the search.
+TEST(PaperReading, NearlyCollinearTriplesAreRejected) {
+  Points points;
+  for (int i = 0; i < 80; ++i) {
+    const double x = 0.0137 * i + 1.1;
+    const double y = 0.61803 * x + (i < 60 ? 0.0 : 0.1 * (i % 7 + 1));
+    worlds::add_point(points, x, y, x * std::tan(radians(30.0)));
+  }
+  SlopeParams params;
+  params.inlier_share = 0.7;
+  for (params.seed = 1; params.seed <= 100; ++params.seed) {
+    const Slope slope = slope_of(points, params);
+    ASSERT_EQ(slope.status, FeatureStatus::kOk) << "seed " << params.seed;
+    EXPECT_EQ(slope.inliers, 80) << "seed " << params.seed;
+    EXPECT_NEAR(slope.angle, radians(30.0), 1e-5) << "seed " << params.seed;
+  }
+}
+
 // Row "eq. (6)": the angle is that between planes, 0 to 90 deg, uphill or downhill in any
 // direction.
 TEST(PaperReading, AnglesLieBetweenZeroAndNinetyDegrees) {

@@ -5,6 +5,12 @@
 #include <algorithm>
 
 namespace mrpt_terrain {
+namespace {
+
+// Below this variance, m^2, all points are on one spot: what is left is the rounding of MomentSums.
+constexpr double kLeastSpread = 1e-8;
+
+}  // namespace
 
 Roughness roughness(const Moments& moments, const RoughnessParams& params) {
   Roughness result;
@@ -18,7 +24,7 @@ Roughness roughness(const Moments& moments, const RoughnessParams& params) {
   for (std::size_t k = 0; k < 3; ++k) {
     result.lambda[k] = std::max(0.0, solver.eigenvalues()[static_cast<Eigen::Index>(k)]);
   }
-  if (result.lambda[2] == 0.0) {
+  if (result.lambda[2] <= kLeastSpread) {
     result.status = FeatureStatus::kDegenerate;
     return result;
   }

@@ -30,7 +30,8 @@ enum class CellId : std::int32_t {};
 ///
 /// The grid covers [-length/2, length/2) x [-width/2, width/2) about the frame's origin, divided
 /// into cells of side `cell_size`; ranges are half open (Meng, Cao et al. 2018, section "Elevation
-/// grid map"). Where a side is no multiple of `cell_size`, its last cells are whole and reach beyond. Arrays over the grid carry a frame of one never-observed cell on all four sides, so
+/// grid map"). Where a side is no multiple of `cell_size`, the last cells are whole and reach
+/// beyond it. Arrays over the grid carry a frame of one never-observed cell on all four sides, so
 /// that the eight neighbours of every cell exist: `array_size()` entries, addressed by `CellId`.
 class GridGeometry {
  public:
