@@ -73,7 +73,7 @@ std::string describe_poses(const std::string& file) {
 void print_file(const std::string& file, Messages& messages, int& exit_code) {
   messages.info(file + "\n");
   const io::SensorModels models = load_sensor_models();
-  const std::unique_ptr<io::ObservationReader> reader = io::open_observations(file);
+  const std::unique_ptr<io::ObservationReader> reader = open_input(file);
   std::map<SensorKey, SensorInfo> sensors;
   std::string poses, damage;
   try {

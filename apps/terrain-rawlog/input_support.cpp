@@ -46,6 +46,15 @@ std::string pose_text(const CPose3D& pose) {
   return text;
 }
 
+std::unique_ptr<mrpt_terrain::io::ObservationReader> open_input(const std::string& file) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  if (std::filesystem::is_other(status)) {
+    throw mrpt_terrain::io::ReadError(file + ": is a pipe or a device, not a file");
+  }
+  return mrpt_terrain::io::open_observations(file);
+}
+
 std::string externals_dir_of(const std::string& rawlog) {
   const std::filesystem::path file(rawlog);
   std::filesystem::path own = file;

@@ -3,8 +3,10 @@
 
 #include <mrpt/poses/CPose3D.h>
 
+#include <memory>
 #include <string>
 
+#include "mrpt_terrain/io/observation_reader.h"
 #include "mrpt_terrain/io/sensor_model.h"
 
 /// Pose from "x y z yaw pitch roll" (metres, degrees; commas and MRPT's brackets allowed; "x y z"
@@ -14,6 +16,11 @@
 
 /// The same form, for messages.
 [[nodiscard]] std::string pose_text(const mrpt::poses::CPose3D& pose);
+
+/// `io::open_observations` for files that can be read more than once, as the programs do: pipes and
+/// devices are refused with a ReadError instead of waited for.
+[[nodiscard]] std::unique_ptr<mrpt_terrain::io::ObservationReader> open_input(
+    const std::string& file);
 
 /// Where rawlog tools keep the externally stored data of `drive.rawlog`: `drive_Images` beside it,
 /// else `Images` beside it. (`CRawlog::detectImagesDirectory` of MRPT 2.5.8 loses the separator

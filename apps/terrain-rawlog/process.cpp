@@ -262,7 +262,7 @@ void process_file(const std::string& file, std::size_t file_number, Run& run) {
   std::unique_ptr<io::ObservationReader> reader;
   try {
     set_externals_dir(run.options.externals_dir, file);
-    reader = io::open_observations(file);
+    reader = open_input(file);
     try {
       run.pipeline.trajectory = trajectory_for(file, run);
     } catch (const io::ReadError&) {
@@ -372,7 +372,7 @@ bool any_readable(const ProcessOptions& options, Messages& messages) {
   std::vector<std::string> problems;
   for (const std::string& file : options.inputs) {
     try {
-      (void)io::open_observations(file);
+      (void)open_input(file);
       return true;
     } catch (const io::ReadError& error) {
       problems.emplace_back(error.what());

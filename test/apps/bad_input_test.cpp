@@ -2,6 +2,7 @@
 // Bad input gets a clear message with file and position and an exit code, and loses nothing.
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationIMU.h>
+#include <sys/stat.h>
 
 #include <limits>
 
@@ -55,6 +56,17 @@ TEST(BadInput, AFolder) {
   const ProgramResult result = process(folder, folder.string());
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_EQ(result.err, "error: " + folder.string() + ": is a folder, not a file\n");
+}
+
+TEST(BadInput, APipeIsRefusedAndNotWaitedFor) {
+  const auto folder = fresh_folder();
+  const std::string pipe = (folder / "pipe").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string command : {"process", "info"}) {
+    const ProgramResult result = terrain_rawlog(folder, {command, pipe});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_EQ(result.err, "error: " + pipe + ": is a pipe or a device, not a file\n");
+  }
 }
 
 TEST(BadInput, TruncatedRawlog) {
