@@ -53,19 +53,40 @@ TEST(GroundPlane, LowestPointsDoNotPullTheFitDown) {
   EXPECT_NEAR(plane.tilt, 0.0, 5 * 0.02 / 580);
 }
 
-// A roof over two thirds of the ground has more points than the ground, but cells below it.
+// A roof over everything, dense, while 60 % of the ground is hidden from the sensor: more cells see
+// the roof only, but those that see the ground are below it.
 TEST(GroundPlane, WhatHasSomethingBelowIsNotTheGround) {
-  Points points = tilted_ground(-1.0, 0.0);
-  worlds::add_flat(points, {-10.0, 3.0, -10.0, 10.0}, 0.1, 1.5);
-  // Half of the ground under the roof is hidden from the sensor.
-  Points seen;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool hidden = points.z[i] < 0.0F && points.x[i] < -3.0F;
-    if (!hidden) seen.push_back(points.x[i], points.y[i], points.z[i]);
-  }
-  const GroundPlane plane = plane_of(seen);
+  Points points;
+  worlds::add_flat(points, {2.0, 10.0, -10.0, 10.0}, 0.2, -1.0);
+  worlds::add_flat(points, {-10.0, 10.0, -10.0, 10.0}, 0.1, 1.5);
+  const GroundPlane plane = plane_of(points);
   ASSERT_TRUE(plane.found);
   EXPECT_NEAR(plane.height, -1.0, 1e-6);
+  EXPECT_NEAR(plane.share, 0.4, 0.03);
+}
+
+// Most candidates lie on an embankment of 35 deg, which is steeper than ground may be.
+TEST(GroundPlane, SteepPlanesAreNoCandidates) {
+  Points points;
+  worlds::add_surface(points, {-10.0, 10.0, -10.0, 10.0}, 0.2, [](double x, double) {
+    return x < -2.0 ? 0.0 : (x + 2.0) * std::tan(radians(35.0));
+  });
+  const GroundPlane plane = plane_of(points);
+  ASSERT_TRUE(plane.found);
+  EXPECT_LT(plane.tilt, radians(5.0));
+}
+
+// 15 % of the candidates are flat ground, the others scattered above it.
+TEST(GroundPlane, TooSmallAShareIsNotFound) {
+  RandomGenerator random(123);
+  Points points;
+  worlds::add_surface(points, {-10.0, 10.0, -10.0, 10.0}, 0.5, [&](double x, double) {
+    return x < -7.0 ? 0.0 : 1.0 + 9.0 * random.uniform();
+  });
+  EXPECT_FALSE(plane_of(points).found);
+  GroundPlaneParams params;
+  params.min_share = 0.1;
+  EXPECT_TRUE(plane_of(points, params).found);
 }
 
 TEST(GroundPlane, SteeperThanMaxTiltIsNotFound) {
@@ -97,6 +118,7 @@ TEST(GroundPlane, NeverSteeperThanMaxTiltEvenAfterTheFit) {
 TEST(GroundPlane, PointsBeyondTheRangeDoNotCount) {
   Points points = tilted_ground(0.0, 0.0);
   worlds::add_flat(points, {31.0, 60.0, -30.0, 30.0}, 0.25, -5.0);
+  worlds::add_flat(points, {-60.0, -31.0, -30.0, 30.0}, 0.25, 0.1);  // within the tolerance
   const GroundPlane plane = plane_of(points);
   ASSERT_TRUE(plane.found);
   EXPECT_NEAR(plane.height, 0.0, 1e-6);
