@@ -3,109 +3,158 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 
 #include "mrpt_terrain/core/random.h"
+#include "worlds.h"
 
 namespace mrpt_terrain {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
+using worlds::radians;
 
-struct Tilt {
-  double height, slope_x, slope_y;  // z = height + slope_x x + slope_y y
-};
+GroundPlane plane_of(const Points& points, const GroundPlaneParams& params = {}) {
+  GroundPlaneWorkspace workspace;
+  return find_ground_plane(points.view(), params, workspace);
+}
 
-// Ground of the given plane with `noise` (uniform, half width), a point every 0.25 m.
-Points ground(const Tilt& plane, double noise) {
-  RandomGenerator random(3);
+/// 20 m x 20 m of exact plane z = height + slope x.
+Points tilted_ground(double height, double angle) {
   Points points;
-  for (double x = -15; x < 15; x += 0.25) {
-    for (double y = -15; y < 15; y += 0.25) {
-      const double z =
-          plane.height + plane.slope_x * x + plane.slope_y * y + noise * (2 * random.uniform() - 1);
-      points.push_back(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
-    }
-  }
+  worlds::add_surface(points, {-10.0, 10.0, -10.0, 10.0}, 0.2,
+                      [&](double x, double) { return height + x * std::tan(angle); });
   return points;
 }
 
-void add_patch(Points& points, double x0, double y0, double size, double z) {
-  for (double x = x0; x < x0 + size; x += 0.25) {
-    for (double y = y0; y < y0 + size; y += 0.25) {
-      points.push_back(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
-    }
+// Analytic: floats of at most 10 m are wrong by 5e-7 m, over 5.8 m of spread.
+TEST(GroundPlane, ExactPlanesAreFound) {
+  for (const double degrees : {-15.0, -3.0, 0.0, 5.0, 15.0}) {
+    const GroundPlane plane = plane_of(tilted_ground(-1.7, radians(degrees)));
+    ASSERT_TRUE(plane.found) << degrees;
+    EXPECT_NEAR(plane.height, -1.7, 1e-6) << degrees;
+    EXPECT_NEAR(plane.tilt, std::abs(radians(degrees)), 2e-6) << degrees;
+    EXPECT_NEAR(plane.normal.x(), -std::sin(radians(degrees)), 1e-6) << degrees;
+    EXPECT_NEAR(plane.normal.norm(), 1.0, 1e-12);
+    EXPECT_EQ(plane.share, 1.0);
   }
 }
 
-TEST(GroundPlane, AnalyticWorldHeightAndTilt) {
-  GroundPlaneWorkspace workspace;
-  for (const Tilt& world : {Tilt{-1.73, 0, 0}, Tilt{-2.2, std::tan(5 * kDegree), 0},
-                            Tilt{0.4, 0, -std::tan(10 * kDegree)}}) {
-    const GroundPlane plane = find_ground_plane(ground(world, 0.02).view(), {}, workspace);
-    ASSERT_TRUE(plane.found);
-    // 14,400 points of 1.2 cm: the mean is known to 0.1 mm, the slope to 0.1 mm over 8.7 m.
-    EXPECT_NEAR(plane.height, world.height, 1e-3);
-    EXPECT_NEAR(plane.tilt, std::atan(std::hypot(world.slope_x, world.slope_y)), 1e-4);
-    EXPECT_NEAR(-plane.normal.x() / plane.normal.z(), world.slope_x, 1e-4);
-    EXPECT_NEAR(-plane.normal.y() / plane.normal.z(), world.slope_y, 1e-4);
-  }
-}
-
-TEST(GroundPlane, ALargerRoofAboveIsNotTheGround) {
-  // Ground is seen in less than half of the map; over the rest there is a flat roof.
-  const Points open = ground({-1.5, 0, 0}, 0.01);
-  Points roofed;
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    roofed.push_back(open.x[i], open.y[i], open.x[i] < -1 ? open.z[i] : 1.0F);
-  }
-  GroundPlaneWorkspace workspace;
-  const GroundPlane plane = find_ground_plane(roofed.view(), {}, workspace);
+// Analytic: noise s over n = 10,000 points; all of them lie within the tolerance of 7 s and enter
+// the fit, so that height and tilt have standard deviations of s / 100 and s / (100 * 5.8 m).
+TEST(GroundPlane, LowestPointsDoNotPullTheFitDown) {
+  RandomGenerator random(121);
+  Points points = tilted_ground(-1.0, 0.0);
+  for (float& z : points.z) z += static_cast<float>(0.02 * worlds::normal_deviate(random));
+  const GroundPlane plane = plane_of(points);
   ASSERT_TRUE(plane.found);
-  EXPECT_NEAR(plane.height, -1.5, 0.01);
+  EXPECT_NEAR(plane.height, -1.0, 5 * 0.02 / 100);
+  EXPECT_NEAR(plane.tilt, 0.0, 5 * 0.02 / 580);
 }
 
-TEST(GroundPlane, ThingsOnTheGroundDoNotLiftIt) {
-  Points points = ground({-1.2, 0, 0}, 0.01);
-  for (int k = 0; k < 8; ++k) add_patch(points, -14 + 3.5 * k, 3, 2.5, -0.6);
-  GroundPlaneWorkspace workspace;
-  const GroundPlane plane = find_ground_plane(points.view(), {}, workspace);
+// A roof over everything, dense, while 60 % of the ground is hidden from the sensor: more cells see
+// the roof only, but those that see the ground are below it.
+TEST(GroundPlane, WhatHasSomethingBelowIsNotTheGround) {
+  Points points;
+  worlds::add_flat(points, {2.0, 10.0, -10.0, 10.0}, 0.2, -1.0);
+  worlds::add_flat(points, {-10.0, 10.0, -10.0, 10.0}, 0.1, 1.5);
+  const GroundPlane plane = plane_of(points);
   ASSERT_TRUE(plane.found);
-  EXPECT_NEAR(plane.height, -1.2, 2e-3);
+  EXPECT_NEAR(plane.height, -1.0, 1e-6);
+  EXPECT_NEAR(plane.share, 0.4, 0.03);
 }
 
-TEST(GroundPlane, NothingFoundInAWallNoPointsOrNaN) {
-  GroundPlaneWorkspace workspace;
-  EXPECT_FALSE(find_ground_plane({}, {}, workspace).found);
-  Points wall;
-  for (double y = -5; y < 5; y += 0.05) {
-    for (double z = -1; z < 1; z += 0.05) {
-      wall.push_back(2.0F, static_cast<float>(y), static_cast<float>(z));
+// Most candidates lie on an embankment of 35 deg, which is steeper than ground may be.
+TEST(GroundPlane, SteepPlanesAreNoCandidates) {
+  Points points;
+  worlds::add_surface(points, {-10.0, 10.0, -10.0, 10.0}, 0.2, [](double x, double) {
+    return x < -2.0 ? 0.0 : (x + 2.0) * std::tan(radians(35.0));
+  });
+  const GroundPlane plane = plane_of(points);
+  ASSERT_TRUE(plane.found);
+  EXPECT_LT(plane.tilt, radians(5.0));
+}
+
+// 15 % of the candidates are flat ground, the others scattered above it.
+TEST(GroundPlane, TooSmallAShareIsNotFound) {
+  RandomGenerator random(123);
+  Points points;
+  worlds::add_surface(points, {-10.0, 10.0, -10.0, 10.0}, 0.5, [&](double x, double) {
+    return x < -7.0 ? 0.0 : 1.0 + 9.0 * random.uniform();
+  });
+  EXPECT_FALSE(plane_of(points).found);
+  GroundPlaneParams params;
+  params.min_share = 0.1;
+  EXPECT_TRUE(plane_of(points, params).found);
+}
+
+TEST(GroundPlane, SteeperThanMaxTiltIsNotFound) {
+  GroundPlaneParams params;
+  params.max_tilt = radians(10.0);
+  EXPECT_TRUE(plane_of(tilted_ground(0.0, radians(9.0)), params).found);
+  // Planes through corners of a steep one may be gentle, but hold too few candidates.
+  params.min_share = 0.5;
+  EXPECT_FALSE(plane_of(tilted_ground(0.0, radians(30.0)), params).found);
+}
+
+// A strip that is narrower than its noise is high has its least scatter sideways; that is no
+// ground.
+TEST(GroundPlane, NeverSteeperThanMaxTiltEvenAfterTheFit) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    RandomGenerator random(seed);
+    Points points;
+    for (int i = 0; i < 4000; ++i) {
+      const double x = 40.0 * random.uniform() - 20.0;
+      const double y = 0.25 + 0.02 * random.uniform();
+      worlds::add_point(points, x, y, 0.2 * random.uniform() - 0.1);
     }
+    const GroundPlane plane = plane_of(points);
+    EXPECT_TRUE(!plane.found || plane.tilt <= GroundPlaneParams{}.max_tilt) << "seed " << seed;
+    EXPECT_TRUE(std::isfinite(plane.height) && plane.normal.allFinite()) << "seed " << seed;
   }
-  EXPECT_FALSE(find_ground_plane(wall.view(), {}, workspace).found);
-  Points nan = ground({0, 0, 0}, 0);
-  for (float& z : nan.z) z = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_FALSE(find_ground_plane(nan.view(), {}, workspace).found);
 }
 
-TEST(GroundPlane, SteeperThanMaxTiltIsNoGround) {
+TEST(GroundPlane, PointsBeyondTheRangeDoNotCount) {
+  Points points = tilted_ground(0.0, 0.0);
+  worlds::add_flat(points, {31.0, 60.0, -30.0, 30.0}, 0.25, -5.0);
+  worlds::add_flat(points, {-60.0, -31.0, -30.0, 30.0}, 0.25, 0.1);  // within the tolerance
+  const GroundPlane plane = plane_of(points);
+  ASSERT_TRUE(plane.found);
+  EXPECT_NEAR(plane.height, 0.0, 1e-6);
+}
+
+TEST(GroundPlane, OrderOfThePointsAndWorkspacesDoNotMatter) {
+  const Points points = tilted_ground(-0.8, radians(4.0));
   GroundPlaneWorkspace workspace;
-  const Points points = ground({0, std::tan(30 * kDegree), 0}, 0.01);
-  EXPECT_FALSE(find_ground_plane(points.view(), {}, workspace).found);
-  GroundPlaneParams loose;
-  loose.max_tilt = 35 * kDegree;
-  EXPECT_TRUE(find_ground_plane(points.view(), loose, workspace).found);
-}
-
-TEST(GroundPlane, SamePointsAndSeedGiveTheSamePlane) {
-  GroundPlaneWorkspace workspace, other;
-  const Points points = ground({-1, 0.05, 0.02}, 0.05);
-  const GroundPlane a = find_ground_plane(points.view(), {}, workspace);
-  const GroundPlane b = find_ground_plane(points.view(), {}, other);
-  EXPECT_EQ(a.normal, b.normal);
+  (void)find_ground_plane(tilted_ground(3.0, 0.1).view(), {}, workspace);
+  const GroundPlane a = plane_of(points);
+  const GroundPlane b = find_ground_plane(points.view(), {}, workspace);
   EXPECT_EQ(a.height, b.height);
+  EXPECT_EQ(a.normal, b.normal);
+  const GroundPlane c = plane_of(worlds::shuffled(points, 122));
+  // Sums over 10,000 points of 10 m in another order.
+  EXPECT_NEAR(a.height, c.height, 1e-10);
+}
+
+TEST(GroundPlane, DegenerateInputFindsNothing) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  Points line;
+  Points spot;
+  Points nowhere;
+  Points few;
+  for (int i = 0; i < 1000; ++i) {
+    line.push_back(0.02F * static_cast<float>(i), 0.1F, 0.0F);
+    spot.push_back(1.0F, 1.0F, 1.0F);
+    nowhere.push_back(0.02F * static_cast<float>(i), kNan, i % 2 == 0 ? 0.0F : kNan);
+  }
+  for (int i = 0; i < 19; ++i)
+    few.push_back(static_cast<float>(i), static_cast<float>(i * i % 7), 0);
+  for (const Points& points : {Points{}, line, spot, nowhere, few}) {
+    const GroundPlane plane = plane_of(points);
+    EXPECT_FALSE(plane.found);
+    EXPECT_TRUE(std::isfinite(plane.height) && plane.normal.allFinite());
+  }
 }
 
 }  // namespace
