@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
 #include <utility>
 
 #include "mrpt_terrain/core/describe.h"
@@ -21,3 +22,8 @@ struct AppParams {
           "Search for the ground when the sensor's pose is unknown (--find-ground)");
   }
 };
+
+/// Refuses values that are each permitted but not together, such as a least range above the
+/// greatest. Throws ParameterError with a line per problem.
+/// \param source beginning of the messages
+void check_together(const AppParams& params, const std::string& source);

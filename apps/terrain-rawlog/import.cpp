@@ -27,6 +27,13 @@ std::string lower_extension(const std::string& file) {
 
 // A folder is KITTI's; files say it by their name.
 std::string format_of(const ImportCommandOptions& options) {
+  for (const std::string& input : options.inputs) {
+    if (!std::filesystem::exists(input)) throw io::ReadError(input + ": no such file or folder");
+    std::error_code different;
+    if (std::filesystem::equivalent(input, options.output, different)) {
+      throw std::invalid_argument("--output: " + options.output + " is one of the inputs");
+    }
+  }
   if (!options.format.empty()) return options.format;
   if (std::filesystem::is_directory(options.inputs.front())) return "kitti";
   const std::string extension = lower_extension(options.inputs.front());

@@ -75,7 +75,7 @@ void print_file(const std::string& file, Messages& messages, int& exit_code) {
   const io::SensorModels models = load_sensor_models();
   const std::unique_ptr<io::ObservationReader> reader = io::open_observations(file);
   std::map<SensorKey, SensorInfo> sensors;
-  std::string damage;
+  std::string poses, damage;
   try {
     io::ReadObservation read;
     while (!stop_requested() && reader->next(read)) {
@@ -83,10 +83,10 @@ void print_file(const std::string& file, Messages& messages, int& exit_code) {
       messages.bar().show(reader->progress(),
                           std::to_string(reader->summary().entries) + " entries");
     }
-    damage = describe_poses(file);
+    poses = describe_poses(file);
   } catch (const io::ReadError& error) {
     exit_code = kExitInput;
-    damage = "damaged: " + std::string(error.what()) + "\n";
+    damage = error.what();
   }
   messages.info(std::to_string(reader->summary().entries) + " entries\n");
   for (const auto& [key, sensor] : sensors) messages.info(describe_sensor(key, sensor));
@@ -94,7 +94,8 @@ void print_file(const std::string& file, Messages& messages, int& exit_code) {
     messages.info("  " + std::to_string(count) + " x " + view::printable(name) +
                   ": class unknown to MRPT, passed over\n");
   }
-  messages.info(damage);
+  messages.info(poses);
+  if (!damage.empty()) messages.error(damage);
 }
 
 }  // namespace

@@ -4,10 +4,10 @@
 #include <mrpt/core/bits_math.h>
 #include <mrpt/img/CImage.h>
 #include <mrpt/io/lazy_load_path.h>
-#include <mrpt/obs/CRawlog.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -26,7 +26,7 @@ CPose3D parse_pose(const std::string& text) {
   for (double number = 0; stream >> number;) v.push_back(number);
   const bool finite = std::all_of(v.begin(), v.end(), [](double d) { return std::isfinite(d); });
   if (!stream.eof() || !finite || (v.size() != 3 && v.size() != 6)) {
-    throw std::invalid_argument("\"" + text +
+    throw std::invalid_argument("--sensor-pose: \"" + text +
                                 "\" is no pose: give \"x y z\" or \"x y z yaw pitch roll\" in "
                                 "metres and degrees");
   }
@@ -46,9 +46,18 @@ std::string pose_text(const CPose3D& pose) {
   return text;
 }
 
+std::string externals_dir_of(const std::string& rawlog) {
+  const std::filesystem::path file(rawlog);
+  std::filesystem::path own = file;
+  own.replace_filename(file.stem().string() + "_Images");
+  std::error_code ignored;
+  if (std::filesystem::is_directory(own, ignored)) return own.string();
+  const std::filesystem::path shared = file.parent_path() / "Images";
+  return std::filesystem::is_directory(shared, ignored) ? shared.string() : own.string();
+}
+
 void set_externals_dir(const std::string& given, const std::string& rawlog) {
-  const std::string folder =
-      given.empty() ? mrpt::obs::CRawlog::detectImagesDirectory(rawlog) : given;
+  const std::string folder = given.empty() ? externals_dir_of(rawlog) : given;
   mrpt::io::setLazyLoadPathBase(folder);
   mrpt::img::CImage::setImagesPathBase(folder);
 }

@@ -8,11 +8,17 @@
 #include "mrpt_terrain/io/sensor_model.h"
 
 /// Pose from "x y z yaw pitch roll" (metres, degrees; commas and MRPT's brackets allowed; "x y z"
-/// alone is a pose without rotation). Throws std::invalid_argument with the form it wants.
+/// alone is a pose without rotation). Throws std::invalid_argument with the option --sensor-pose
+/// and the form it wants.
 [[nodiscard]] mrpt::poses::CPose3D parse_pose(const std::string& text);
 
 /// The same form, for messages.
 [[nodiscard]] std::string pose_text(const mrpt::poses::CPose3D& pose);
+
+/// Where rawlog tools keep the externally stored data of `drive.rawlog`: `drive_Images` beside it,
+/// else `Images` beside it. (`CRawlog::detectImagesDirectory` of MRPT 2.5.8 loses the separator
+/// behind the folder.)
+[[nodiscard]] std::string externals_dir_of(const std::string& rawlog);
 
 /// Tells MRPT where the externally stored data of a rawlog are: the given folder, or the one that
 /// rawlog tools use for that file.

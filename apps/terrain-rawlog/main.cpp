@@ -5,6 +5,7 @@
 
 #include "app_params.h"
 #include "exit_code.h"
+#include "memory_limit.h"
 #include "mrpt_terrain/params/ini.h"
 #include "options.h"
 #include "stop_signal.h"
@@ -50,9 +51,13 @@ void add_process(CLI::App& app, ProcessOptions& options) {
                   "Only observations whose whole label matches")
       ->type_name("REGEX");
   command.add_option("--from-index", selection.from_index, "First entry of each input")
+      ->check(CLI::NonNegativeNumber.description(""))
       ->type_name("N");
-  command.add_option("--to-index", selection.to_index, "Last entry of each input")->type_name("N");
+  command.add_option("--to-index", selection.to_index, "Last entry of each input")
+      ->check(CLI::NonNegativeNumber.description(""))
+      ->type_name("N");
   command.add_option("--only-first-n", selection.only_first_n, "Stop after N scans")
+      ->check(CLI::NonNegativeNumber.description(""))
       ->type_name("N");
   command.add_option("--poses", options.poses, "Poses of the robot, instead of the rawlog's own")
       ->type_name("FILE.tum");
@@ -68,6 +73,7 @@ void add_process(CLI::App& app, ProcessOptions& options) {
                   "Folder of externally stored data (default: as rawlog tools find it)")
       ->type_name("DIR");
   command.add_option("--table-rows", options.table_rows, "Clusters per printed table")
+      ->check(CLI::NonNegativeNumber.description(""))
       ->type_name("N")
       ->capture_default_str();
   add_verbosity(command, options.verbosity);
@@ -105,7 +111,9 @@ void add_import(CLI::App& app, ImportCommandOptions& options) {
   command.add_option("--period", options.period, "Seconds between scans without time stamps")
       ->capture_default_str()
       ->check(CLI::PositiveNumber.description(""));
-  command.add_option("--only-first-n", options.only_first_n, "Stop after N scans")->type_name("N");
+  command.add_option("--only-first-n", options.only_first_n, "Stop after N scans")
+      ->check(CLI::NonNegativeNumber.description(""))
+      ->type_name("N");
   add_verbosity(command, options.verbosity);
 }
 
@@ -133,8 +141,8 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? kExitOk : kExitUsage;
   }
   if (print_config) {
-    std::cout << mrpt_terrain::params::dump_ini(AppParams{});
-    return kExitOk;
+    std::cout << mrpt_terrain::params::dump_ini(AppParams{}) << std::flush;
+    return std::cout ? kExitOk : kExitOutput;
   }
   if (app.got_subcommand("process")) return run_process(process);
   if (app.got_subcommand("info")) return run_info(info);
@@ -146,6 +154,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  limit_memory();
   install_stop_signals();
   try {
     return run(argc, argv);

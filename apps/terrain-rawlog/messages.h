@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <string>
 
 #include "progress_bar.h"
@@ -25,4 +27,26 @@ class Messages {
  private:
   Verbosity level_;
   ProgressBar bar_;
+};
+
+/// Says the first few warnings of each kind and counts the others, so that thousands of scans with
+/// the same trouble do not hide what else there is. At DEBUG all are said.
+class RepeatedWarnings {
+ public:
+  explicit RepeatedWarnings(Messages& messages) : messages_(messages) {}
+
+  /// \param kind what is counted together
+  /// \param place file and entry
+  /// \param text is said once as long as it stays the same
+  void warn(const std::string& kind, const std::string& place, const std::string& text);
+  /// Says how many there were that were not said, and begins anew.
+  void finish();
+
+ private:
+  struct Kind {
+    std::size_t said = 0, unsaid = 0;
+    std::string first_place, last_text;
+  };
+  Messages& messages_;
+  std::map<std::string, Kind> kinds_;
 };

@@ -2,11 +2,16 @@
 // terrain-rawlog process: describes every scan of rawlogs and simple maps.
 #include <mrpt/core/bits_math.h>
 
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <memory>
+#include <new>
 #include <regex>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "exit_code.h"
 #include "input_support.h"
@@ -36,6 +41,7 @@ struct Run {
   const ProcessOptions& options;
   std::regex sensor_label;
   Messages messages;
+  RepeatedWarnings warnings{messages};
   ScanPipeline pipeline;
   Outputs outputs;
   view::RunSummary summary;
@@ -43,7 +49,7 @@ struct Run {
   DrawableScan worst;         ///< so far; valid if summary.worst_scan
   double worst_share = -1.0;
   view::ScanRecord last;
-  std::size_t without_pose = 0;
+  std::size_t entries = 0;                         ///< that were read, asked for or not
   std::map<std::string, std::size_t> no_geometry;  ///< observations that never have points
   int exit_code = kExitOk;
 
@@ -72,6 +78,7 @@ AppParams load_params(const ProcessOptions& options) {
   AppParams result;
   if (!options.config.empty()) params::load_ini(options.config, result);
   for (const std::string& setting : options.settings) params::set(result, setting, "--set");
+  check_together(result, options.config.empty() ? "--set" : options.config);
   return result;
 }
 
@@ -94,8 +101,9 @@ void warn_about(const view::ScanRecord& record, Run& run) {
       run.pipeline.description.grid.observed() == 0 ? view::DescriptionCounts{} : record.counts;
   const std::string place = record.file + ": entry " + std::to_string(record.entry);
   if (counts.observed_cells == 0) {
-    run.messages.warn(place + ": none of its " + view::grouped(record.counts.points) +
-                      " points lies in the map (see [grid] and the sensor's pose)");
+    run.warnings.warn("no points in the map", place,
+                      "none of its " + view::grouped(record.counts.points) +
+                          " points lies in the map (see [grid] and the sensor's pose)");
     ++run.summary.scans_skipped["no points in the map"];
     run.incomplete();
   } else if (record.index == 0 && counts.ground_cells * 20 < counts.observed_cells) {
@@ -104,10 +112,9 @@ void warn_about(const view::ScanRecord& record, Run& run) {
                       "with --sensor-pose or try --find-ground");
   }
   if (!run.options.poses.empty() && !run.pipeline.scan.T_map_robot) {
-    if (++run.without_pose == 1) {
-      run.messages.warn(place + ": " + run.options.poses + " has no pose for its time " +
-                        view::fixed(record.stamp, 6) + " s; described without");
-    }
+    run.warnings.warn("no pose in " + run.options.poses, place,
+                      run.options.poses + " has no pose for its time " +
+                          view::fixed(record.stamp, 6) + " s; described without");
     run.incomplete();
   }
 }
@@ -166,16 +173,29 @@ void find_ground(const std::string& place, Run& run) {
       "\" (give it with --sensor-pose to fix it)\n\n");
 }
 
+// What is counted together in the summary. The reasons of single observations (their counts, their
+// external files) would make as many kinds as there are observations.
+std::string kind_of(const mrpt::obs::CObservation& observation, const io::Conversion& conversion) {
+  const std::string status = name_of(conversion.status);
+  if (conversion.status != io::ConversionStatus::kNoPoints &&
+      conversion.status != io::ConversionStatus::kLoadFailed) {
+    return status + ": " + conversion.reason;
+  }
+  return status + ": " + observation.GetRuntimeClass()->className + " '" + observation.sensorLabel +
+         "'";
+}
+
 // Observations that never have points are part of most rawlogs; the others should have been used.
-void skip(const std::string& place, const io::Conversion& conversion, Run& run) {
+void skip(const mrpt::obs::CObservation& observation, const std::string& place,
+          const io::Conversion& conversion, Run& run) {
   if (conversion.status == io::ConversionStatus::kNoGeometry) {
     ++run.no_geometry[conversion.reason];
     return;
   }
-  const std::string reason = std::string(name_of(conversion.status)) + ": " + conversion.reason;
-  if (++run.summary.scans_skipped[reason] == 1) {
-    run.messages.warn(place + ": " + conversion.reason);
-  }
+  const std::string kind = kind_of(observation, conversion);
+  ++run.summary.scans_skipped[kind];
+  view::add(run.summary.left_out, left_out(run.pipeline.sensor_points.counts));
+  run.warnings.warn(kind, place, conversion.reason);
   run.incomplete();
 }
 
@@ -190,7 +210,7 @@ void process_observation(const std::string& file, const io::ReadObservation& rea
   const std::string place = file + ": entry " + std::to_string(read.entry);
   const io::Conversion conversion = convert(observation, run.pipeline);
   if (conversion.status != io::ConversionStatus::kOk) {
-    skip(place, conversion, run);
+    skip(observation, place, conversion, run);
     return;
   }
   if (read.T_map_robot) {
@@ -254,7 +274,10 @@ void process_file(const std::string& file, std::size_t file_number, Run& run) {
     run.messages.error(error.what());
     run.exit_code = kExitInput;
   }
-  if (reader) merge_unknown_classes(file, reader->summary(), run);
+  run.warnings.finish();
+  if (!reader) return;
+  run.entries += reader->summary().entries;
+  merge_unknown_classes(file, reader->summary(), run);
 }
 
 void write_last_views(Run& run) {
@@ -272,25 +295,35 @@ std::string counts_text(const std::map<std::string, std::size_t>& counts) {
   return text;
 }
 
+// Why a run over readable files described nothing.
+std::string nothing_described(const Run& run) {
+  const Selection& selection = run.options.selection;
+  std::string reasons = counts_text(run.summary.scans_skipped) + counts_text(run.no_geometry);
+  if (reasons.empty() && run.entries > 0 && selection.from_index >= run.entries) {
+    reasons = "  --from-index is " + std::to_string(selection.from_index) +
+              ", the last entry of the inputs is " + std::to_string(run.entries - 1) + "\n";
+  }
+  if (reasons.empty()) reasons = "  there is no observation in what was read\n";
+  reasons.pop_back();
+  return "no scan was described\n" + reasons;
+}
+
 void report(Run& run, double wall_seconds) {
-  std::string text = std::to_string(run.summary.scans_processed) + " scans described in " +
+  const std::size_t scans = run.summary.scans_processed;
+  std::string text = std::to_string(scans) + (scans == 1 ? " scan" : " scans") + " described in " +
                      view::fixed(wall_seconds, 2) + " s\n";
-  if (!run.summary.scans_skipped.empty())
+  if (scans != 0 && !run.summary.scans_skipped.empty()) {
     text += "not described:\n" + counts_text(run.summary.scans_skipped);
+  }
   for (const View& view : run.outputs.views()) text += view.why + ": " + view.picture + "\n";
   text += "tables, scenes, clouds, configuration: " + run.outputs.folder() + "\n";
   run.messages.info(text);
   if (!run.no_geometry.empty()) {
     run.messages.debug("observations without geometry:\n" + counts_text(run.no_geometry));
   }
-  if (run.summary.scans_processed == 0 && run.exit_code != kExitInput) {
-    run.messages.error("no scan was described\n" + counts_text(run.summary.scans_skipped) +
-                       counts_text(run.no_geometry));
+  if (scans == 0 && run.exit_code != kExitInput && !stop_requested()) {
+    run.messages.error(nothing_described(run));
     run.incomplete();
-  }
-  if (run.without_pose > 1) {
-    run.messages.warn(std::to_string(run.without_pose) + " scans without a pose in " +
-                      run.options.poses);
   }
 }
 
@@ -313,6 +346,42 @@ int run_all(Run& run) {
   return kExitInterrupted;
 }
 
+// Wrong use that would otherwise be met with half of the work done, or never.
+void check_options(const ProcessOptions& options) {
+  const Selection& selection = options.selection;
+  if (selection.from_index > selection.to_index) {
+    throw std::invalid_argument("--from-index " + std::to_string(selection.from_index) +
+                                " is behind --to-index " + std::to_string(selection.to_index));
+  }
+  if (options.output_dir.empty()) throw std::invalid_argument("--output-dir: needs a name");
+  if (!options.externals_dir.empty() && !std::filesystem::is_directory(options.externals_dir)) {
+    throw std::invalid_argument("--externals-dir: " + options.externals_dir + " is no folder");
+  }
+  try {
+    (void)std::regex(selection.sensor_label);
+  } catch (const std::regex_error& error) {
+    throw std::invalid_argument("--sensor-label: not a regular expression: " +
+                                std::string(error.what()));
+  }
+  if (!options.poses.empty()) (void)io::load_tum(options.poses);
+  if (!options.sensor_pose.empty()) (void)parse_pose(options.sensor_pose);
+}
+
+// A run without any readable input must not replace the results of an earlier one.
+bool any_readable(const ProcessOptions& options, Messages& messages) {
+  std::vector<std::string> problems;
+  for (const std::string& file : options.inputs) {
+    try {
+      (void)io::open_observations(file);
+      return true;
+    } catch (const io::ReadError& error) {
+      problems.emplace_back(error.what());
+    }
+  }
+  for (const std::string& problem : problems) messages.error(problem);
+  return false;
+}
+
 }  // namespace
 
 int run_process(const ProcessOptions& options) {
@@ -320,18 +389,18 @@ int run_process(const ProcessOptions& options) {
   AppParams params;
   try {
     params = load_params(options);
-    if (!options.poses.empty()) (void)io::load_tum(options.poses);
-    if (!options.sensor_pose.empty()) (void)parse_pose(options.sensor_pose);
+    check_options(options);
   } catch (const std::exception& error) {
     messages.error(error.what());
     return kExitUsage;
   }
   try {
+    if (!any_readable(options, messages)) return kExitInput;
     Run run(options, params);
     return run_all(run);
-  } catch (const std::regex_error& error) {
-    messages.error("--sensor-label: not a regular expression: " + std::string(error.what()));
-    return kExitUsage;
+  } catch (const std::bad_alloc&) {
+    messages.error("out of memory (half of the machine's may be used): try a smaller [grid]");
+    return kExitInput;
   } catch (const std::exception& error) {
     messages.error(error.what());
     return kExitOutput;

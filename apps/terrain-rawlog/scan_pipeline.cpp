@@ -59,6 +59,10 @@ GroundPlane level_by_ground(ScanPipeline& pipeline) {
   return plane;
 }
 
+view::LeftOutReturns left_out(const io::ReturnCounts& counts) {
+  return {counts.no_return, counts.not_finite, counts.out_of_range};
+}
+
 void describe_scan(ScanPipeline& pipeline, view::ScanRecord& record) {
   const Clock::time_point start = Clock::now();
   const io::Trajectory* trajectory = pipeline.trajectory.empty() ? nullptr : &pipeline.trajectory;
@@ -70,7 +74,6 @@ void describe_scan(ScanPipeline& pipeline, view::ScanRecord& record) {
            pipeline.description, &timer);
   record.milliseconds.total = milliseconds_since(start);
   record.stamp = pipeline.scan.stamp;
-  record.left_out = {pipeline.scan.counts.no_return, pipeline.scan.counts.not_finite,
-                     pipeline.scan.counts.out_of_range};
+  record.left_out = left_out(pipeline.scan.counts);
   record.counts = view::count(pipeline.description);
 }

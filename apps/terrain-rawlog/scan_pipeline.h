@@ -38,3 +38,7 @@ mrpt_terrain::GroundPlane level_by_ground(ScanPipeline& pipeline);
 
 /// Describes `pipeline.sensor_points` and fills counts and times of `record` (all but `io`).
 void describe_scan(ScanPipeline& pipeline, mrpt_terrain::view::ScanRecord& record);
+
+/// The counts as `scans.csv` and `summary.json` name them.
+[[nodiscard]] mrpt_terrain::view::LeftOutReturns left_out(
+    const mrpt_terrain::io::ReturnCounts& counts);

@@ -14,6 +14,7 @@ ScanRecord scan_of(std::size_t index, double total_ms) {
   scan.entry = 10 + index;
   scan.index = index;
   scan.counts.points = 100;
+  scan.left_out = {1, 2, 4};
   scan.counts.clusters[static_cast<std::size_t>(TerrainClass::kPothole)] = 2;
   scan.milliseconds.stage[static_cast<std::size_t>(Stage::kGround)] = 0.5 * total_ms;
   scan.milliseconds.total = total_ms;
@@ -52,6 +53,9 @@ TEST(RunSummary, JsonReadsBack) {
   EXPECT_EQ(json["skipped_because"]["planar_scan"], 4);
   EXPECT_EQ(json["unknown_classes"]["CObservationFoo"], 3);
   EXPECT_EQ(json["points"], 300);
+  EXPECT_EQ(json["left_out"]["no_return"], 3);
+  EXPECT_EQ(json["left_out"]["not_finite"], 6);
+  EXPECT_EQ(json["left_out"]["out_of_range"], 12);
   EXPECT_EQ(json["clusters"]["pothole"], 6);
   EXPECT_EQ(json["clusters"]["slope"], 0);
   EXPECT_FALSE(json["clusters"].contains("none"));

@@ -63,6 +63,12 @@ Json reference_json(const std::optional<ScanReference>& scan) {
 
 }  // namespace
 
+void add(LeftOutReturns& sum, const LeftOutReturns& scan) {
+  sum.no_return += scan.no_return;
+  sum.not_finite += scan.not_finite;
+  sum.out_of_range += scan.out_of_range;
+}
+
 void add_scan(RunSummary& summary, const ScanRecord& scan) {
   const double total = scan.milliseconds.total;
   const bool is_slowest =
@@ -74,6 +80,7 @@ void add_scan(RunSummary& summary, const ScanRecord& scan) {
   }
   ++summary.scans_processed;
   summary.points += scan.counts.points;
+  add(summary.left_out, scan.left_out);
   for (std::size_t kind = 0; kind < kClassCount; ++kind) {
     summary.clusters[kind] += scan.counts.clusters[kind];
   }
@@ -99,6 +106,9 @@ std::string summary_json(const RunSummary& summary) {
   json["skipped_because"] = counts_json(summary.scans_skipped);
   json["unknown_classes"] = counts_json(summary.unknown_classes);
   json["points"] = summary.points;
+  json["left_out"] = {{"no_return", summary.left_out.no_return},
+                      {"not_finite", summary.left_out.not_finite},
+                      {"out_of_range", summary.left_out.out_of_range}};
   json["clusters"] = clusters_json(summary);
   json["milliseconds"] = times_json(summary);
   json["slowest_scan"] = reference_json(summary.slowest_scan);

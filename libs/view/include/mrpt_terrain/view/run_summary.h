@@ -28,6 +28,7 @@ struct RunSummary {
   std::map<std::string, std::size_t> scans_skipped;    ///< reason -> number of observations
   std::map<std::string, std::size_t> unknown_classes;  ///< class names that MRPT does not know
   std::size_t points = 0;                              ///< of all processed scans
+  LeftOutReturns left_out;                             ///< of all scans, skipped ones included
   std::array<std::size_t, kClassCount> clusters{};     ///< index: TerrainClass
   std::vector<ScanMilliseconds> milliseconds;          ///< one per processed scan
   std::size_t slowest = 0;                             ///< position in `milliseconds`
@@ -35,6 +36,9 @@ struct RunSummary {
   std::optional<ScanReference> worst_scan;             ///< by whatever measure its `why` names
   double wall_seconds = 0.0;                           ///< the run from start to end
 };
+
+/// Adds the returns that were left out of one scan.
+void add(LeftOutReturns& sum, const LeftOutReturns& scan);
 
 /// Counts one processed scan.
 void add_scan(RunSummary& summary, const ScanRecord& scan);
