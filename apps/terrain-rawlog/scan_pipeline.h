@@ -32,8 +32,9 @@ struct ScanPipeline {
 mrpt_terrain::io::Conversion convert(const mrpt::obs::CObservation& observation,
                                      ScanPipeline& pipeline);
 
-/// Looks for the ground in `pipeline.sensor_points`. If it is there, the robot frame of this and
-/// all further scans is tilted and lifted so that the ground is at z = 0.
+/// Looks for the ground in `pipeline.sensor_points`. If it is there, the sensor poses of this and all
+/// further scans are corrected so that the ground is at z = 0 of the robot frame; the robot's path
+/// stays as it is.
 mrpt_terrain::GroundPlane level_by_ground(ScanPipeline& pipeline);
 
 /// Describes `pipeline.sensor_points` and fills counts and times of `record` (all but `io`).

@@ -45,9 +45,13 @@ TEST(Classes, TableOneByHand) {
 // Row "Table 1 versus text at the limits": the table includes both limits.
 TEST(PaperReading, LimitsOfTableOneBelongToPotholeAndObstacle) {
   EXPECT_EQ(class_from_height(height(-0.05), kParams), TerrainClass::kPothole);
-  EXPECT_EQ(class_from_height(height(std::nextafter(-0.05, 0.0)), kParams), TerrainClass::kOther);
+  EXPECT_EQ(class_from_height(height(std::nextafter(-0.05F, 0.0F)), kParams), TerrainClass::kOther);
   EXPECT_EQ(class_from_height(height(0.05), kParams), TerrainClass::kNone);
-  EXPECT_EQ(class_from_height(height(std::nextafter(0.05, 0.0)), kParams), TerrainClass::kOther);
+  EXPECT_EQ(class_from_height(height(std::nextafter(0.05F, 0.0F)), kParams), TerrainClass::kOther);
+  // Heights are floats: one that is written like the threshold is at the threshold, for all values.
+  ClassParams params;
+  params.t_pos = 0.7;  // more than 0.7F
+  EXPECT_EQ(class_from_height(height(0.7F), params), TerrainClass::kNone);
 }
 
 // The same row: every height index has exactly one class, and the height alone decides unless the

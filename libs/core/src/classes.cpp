@@ -4,8 +4,10 @@
 namespace mrpt_terrain {
 
 TerrainClass class_from_height(const HeightIndex& height, const ClassParams& params) {
-  if (height.h_f <= params.t_neg) return TerrainClass::kPothole;
-  if (height.h_f < params.t_pos) return TerrainClass::kOther;
+  // As floats, like eq. (1): a height that equals a threshold in the file is equal here too.
+  const auto h_f = static_cast<float>(height.h_f);
+  if (h_f <= static_cast<float>(params.t_neg)) return TerrainClass::kPothole;
+  if (h_f < static_cast<float>(params.t_pos)) return TerrainClass::kOther;
   return TerrainClass::kNone;
 }
 

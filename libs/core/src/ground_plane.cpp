@@ -102,9 +102,12 @@ GroundPlane find_ground_plane(const PointsView& points, const GroundPlaneParams&
   if (!best.plane) return result;
   result.share = best.votes.on / static_cast<double>(candidates.size);
   if (result.share < params.min_share || best.votes.below > best.votes.on) return result;
-  refine(points, *best.plane, params, result);
-  result.found = true;
-  return result;
+  GroundPlane fitted = result;
+  refine(points, *best.plane, params, fitted);
+  // Points in a strip that is narrower than it is thick have their least scatter sideways.
+  if (!(fitted.tilt <= params.max_tilt)) return result;
+  fitted.found = true;
+  return fitted;
 }
 
 }  // namespace mrpt_terrain

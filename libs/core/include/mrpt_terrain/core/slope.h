@@ -14,7 +14,7 @@ namespace mrpt_terrain {
 
 /// Parameters of the slope estimate (paper, eqs. 5 and 6, Algorithm 2).
 struct SlopeParams {
-  double inlier_distance = 0.02;  ///< T_q (T_Segment in Algorithm 2), metres
+  double inlier_distance = 0.01;  ///< T_q (T_Segment in Algorithm 2), metres
   double inlier_share = 0.95;     ///< T_Inlier: RANSAC stops when the share of inliers exceeds it
   int max_iterations = 1000;      ///< MaxIterations
   /// Inclination of the RANSAC plane, radians, from which the final fit minimises distances along

@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Makes the pictures of README.md and doc/tour.md.
+# shellcheck source-path=SCRIPTDIR
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+images="$project_folder/doc/images"
+
+usage() {
+  cat <<'TEXT'
+usage: scripts/figures.sh [PROGRAM]
+
+Writes the pictures in doc/images: of the VLP-16 scan that Debian's mrpt-common brings along, and of
+a small made-up world. Builds terrain-rawlog first, or uses PROGRAM if it is given.
+TEXT
+}
+
+sample_rawlog() {
+  dpkg -L mrpt-common | grep '/test_velodyne_VLP16\.rawlog$' ||
+    fail "mrpt-common has no test_velodyne_VLP16.rawlog"
+}
+
+# Flat ground of 5 m x 5 m with a point every 2 cm, and on it a ramp of 13.86 degrees, a box, a hole
+# and an uneven shallow dent: one thing of each class.
+made_up_world() {
+  awk '
+    function inside(x, y, x0, y0, size_x, size_y) {
+      return x >= x0 && x < x0 + size_x && y >= y0 && y < y0 + size_y
+    }
+    function point(x, y, z) { line[n++] = sprintf("%.3f %.3f %.4f", x, y, z) }
+    BEGIN {
+      ramp = 13.86 / 180 * atan2(0, -1)
+      for (i = -125; i < 125; ++i) for (j = -125; j < 125; ++j) {
+        x = 0.02 * i + 0.01; y = 0.02 * j + 0.01
+        if (inside(x, y, 0.9, 0.6, 1.2, 1.0)) point(x, y, (x - 0.9) * sin(ramp) / cos(ramp))
+        else if (inside(x, y, 1.3, -1.1, 0.3, 0.3)) for (k = 1; k <= 15; ++k) point(x, y, 0.01 * k)
+        else if (inside(x, y, -1.5, -1.4, 0.6, 0.6)) point(x, y, -0.09)
+        else if (inside(x, y, -1.6, 0.9, 0.5, 0.5)) point(x, y, (i + j) % 2 ? -0.055 : -0.02)
+        else point(x, y, 0)
+      }
+      printf "ply\nformat ascii 1.0\nelement vertex %d\n", n
+      printf "property float x\nproperty float y\nproperty float z\nend_header\n"
+      for (k = 0; k < n; ++k) print line[k]
+    }'
+}
+
+# picture NAME INPUT OPTION...: describes INPUT and keeps the picture of its first scan as NAME.png.
+picture() {
+  local name="$1" input="$2"
+  shift 2
+  say "$name: $*"
+  "$program" process "$input" "$@" --output-dir "$work/$name"
+  cp "$work/$name/scan_000000.png" "$images/$name.png"
+}
+
+main() {
+  case "${1:-}" in -h | --help) usage; return ;; esac
+  program="${1:-}"
+  if [[ -z "$program" ]]; then
+    install_packages
+    configure release
+    build release terrain-rawlog
+    program="$project_folder/build/release/bin/terrain-rawlog"
+  fi
+  work="$(mktemp -d)"
+  trap 'rm -rf "$work"' EXIT
+  mkdir -p "$images"
+  local vlp16
+  vlp16="$(sample_rawlog)"
+  local outdoor="$project_folder/params/paper_outdoor.ini"
+  local fine=(--set grid.length=24 --set grid.width=24 --set grid.cell_size=0.05)
+
+  picture vlp16_60m "$vlp16" -c "$outdoor" --find-ground
+  picture vlp16_24m "$vlp16" -c "$outdoor" --find-ground "${fine[@]}"
+  made_up_world >"$work/made_up_world.ply"
+  "$program" import "$work/made_up_world.ply" --output "$work/made_up_world.rawlog"
+  picture made_up_world "$work/made_up_world.rawlog" -c "$project_folder/params/paper.ini"
+}
+
+main "$@"
