@@ -97,8 +97,7 @@ std::string scan_title(const view::ScanRecord& record) {
 
 // What a person should know about a scan that gave little or nothing.
 void warn_about(const view::ScanRecord& record, Run& run) {
-  const view::DescriptionCounts& counts =
-      run.pipeline.description.grid.observed() == 0 ? view::DescriptionCounts{} : record.counts;
+  const view::DescriptionCounts& counts = record.counts;
   const std::string place = record.file + ": entry " + std::to_string(record.entry);
   if (counts.observed_cells == 0) {
     run.warnings.warn("no points in the map", place,

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-
 #include "mrpt_terrain/io/import_writer.h"
 #include "mrpt_terrain/io/observation_reader.h"
 #include "mrpt_terrain/io/pcd.h"
@@ -12,18 +10,9 @@ namespace {
 ImportSummary import_files(const std::vector<std::string>& files, const ImportOptions& options,
                            const std::string& rawlog, FileCloud (*read)(const std::string&)) {
   if (files.empty()) throw ReadError(rawlog + ": there are no files to import");
-  const std::size_t total =
-      options.max_scans == 0 ? files.size() : std::min(files.size(), options.max_scans);
-  ImportWriter writer(rawlog, options);
-  for (std::size_t k = 0; k < total; ++k) {
-    if (options.progress && !options.progress(k, total)) {
-      ImportSummary stopped;
-      stopped.stopped = true;
-      return stopped;
-    }
+  return import_scans(files.size(), options, rawlog, [&](std::size_t k, ImportWriter& writer) {
     writer.add(read(files[k]), static_cast<double>(k) * options.period, std::nullopt);
-  }
-  return writer.commit();
+  });
 }
 
 }  // namespace

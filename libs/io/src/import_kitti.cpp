@@ -202,18 +202,9 @@ class KittiFolder {
 ImportSummary import_kitti(const std::string& folder, const ImportOptions& options,
                            const std::string& rawlog) {
   const KittiFolder source(folder, options.T_robot_sensor);
-  const std::size_t total =
-      options.max_scans == 0 ? source.size() : std::min(source.size(), options.max_scans);
-  ImportWriter writer(rawlog, options);
-  for (std::size_t k = 0; k < total; ++k) {
-    if (options.progress && !options.progress(k, total)) {
-      ImportSummary stopped;
-      stopped.stopped = true;
-      return stopped;
-    }
+  return import_scans(source.size(), options, rawlog, [&](std::size_t k, ImportWriter& writer) {
     writer.add(source.cloud(k), source.stamp(k, options.period), source.T_map_robot(k));
-  }
-  return writer.commit();
+  });
 }
 
 }  // namespace mrpt_terrain::io

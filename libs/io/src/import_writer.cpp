@@ -6,15 +6,16 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 #include <vector>
 
+#include "mrpt_terrain/files/whole_file.h"
 #include "mrpt_terrain/io/label_file.h"
 #include "mrpt_terrain/io/rawlog_writer.h"
 #include "mrpt_terrain/io/trajectory.h"
-#include "mrpt_terrain/files/whole_file.h"
 
 namespace mrpt_terrain::io {
 namespace {
@@ -155,6 +156,23 @@ ImportSummary ImportWriter::commit() {
   // Last, so that a rawlog is there only with what belongs to it.
   impl_->rawlog.commit();
   return summary;
+}
+
+ImportSummary import_scans(std::size_t available, const ImportOptions& options,
+                           const std::string& rawlog,
+                           const std::function<void(std::size_t k, ImportWriter& writer)>& add) {
+  const std::size_t total =
+      options.max_scans == 0 ? available : std::min(available, options.max_scans);
+  ImportWriter writer(rawlog, options);
+  for (std::size_t k = 0; k < total; ++k) {
+    if (options.progress && !options.progress(k, total)) {
+      ImportSummary stopped;
+      stopped.stopped = true;
+      return stopped;
+    }
+    add(k, writer);
+  }
+  return writer.commit();
 }
 
 }  // namespace mrpt_terrain::io

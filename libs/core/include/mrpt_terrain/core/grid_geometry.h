@@ -80,8 +80,7 @@ class GridGeometry {
     return {value_of(id) / stride() - 1, value_of(id) % stride() - 1};
   }
 
-  /// Factor and offsets of `cell_at`, for loops that convert many points at once.
-  [[nodiscard]] double cells_per_metre() const { return cells_per_metre_; }
+  /// Distance of the edges from the origin, metres.
   [[nodiscard]] double half_length() const { return half_length_; }
   [[nodiscard]] double half_width() const { return half_width_; }
 

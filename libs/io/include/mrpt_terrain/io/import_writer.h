@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,5 +28,12 @@ class ImportWriter {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The loop of every importer: writes scans 0, 1, ... of `available`, as many as the options allow,
+/// and asks the options' progress callback before each whether to go on.
+/// \param add hands the k-th scan to the writer
+ImportSummary import_scans(std::size_t available, const ImportOptions& options,
+                           const std::string& rawlog,
+                           const std::function<void(std::size_t k, ImportWriter& writer)>& add);
 
 }  // namespace mrpt_terrain::io
