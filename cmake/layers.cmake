@@ -4,10 +4,14 @@
 set(terrain_layer_files "")
 set(terrain_layer_core "Eigen3::Eigen")
 set(terrain_layer_params "core" "mrpt::config" "mrpt::containers")
-set(terrain_layer_io "core" "files" "params" "mrpt::obs" "mrpt::maps" "mrpt::io" "mrpt::containers" "ZLIB::ZLIB")
+set(terrain_layer_sensors "params" "yaml-cpp" "mrpt::containers")
+set(terrain_layer_sim "core" "files" "params" "sensors" "embree" "yaml-cpp")
+set(terrain_layer_io "core" "files" "params" "sensors" "mrpt::obs" "mrpt::maps" "mrpt::io" "mrpt::containers" "ZLIB::ZLIB")
 set(terrain_layer_view "core" "files" "mrpt::opengl" "PkgConfig::cairo" "nlohmann_json::nlohmann_json"
   "ZLIB::ZLIB")
-set(terrain_layer_eval "core" "params" "io")
+set(terrain_layer_eval "core" "files" "params" "io" "sensors" "sim" "pcl_sample_consensus")
+# Truth and result cannot leak into each other: of core, sim may include the data types only.
+set(terrain_core_headers_of_sim grid_geometry labels param_info points random)
 
 # terrain_library(NAME USES target... [PRIVATE_USES target...])
 # Builds libs/NAME from all its sources as mrpt_terrain::NAME. Refuses a dependency that the table
@@ -31,11 +35,18 @@ function(terrain_library name)
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(mrpt_terrain_${name} PUBLIC cxx_std_17)
-  list(TRANSFORM arg_USES REPLACE "^([a-z]+)$" "mrpt_terrain::\\1")
-  list(TRANSFORM arg_PRIVATE_USES REPLACE "^([a-z]+)$" "mrpt_terrain::\\1")
+  # Names of this table are libraries of this project.
+  foreach(list IN ITEMS arg_USES arg_PRIVATE_USES)
+    set(targets_${list} ${${list}})
+    foreach(dependency IN LISTS ${list})
+      if(DEFINED terrain_layer_${dependency})
+        list(TRANSFORM targets_${list} REPLACE "^${dependency}$" "mrpt_terrain::${dependency}")
+      endif()
+    endforeach()
+  endforeach()
   target_link_libraries(mrpt_terrain_${name}
-    PUBLIC ${arg_USES}
-    PRIVATE ${arg_PRIVATE_USES} $<BUILD_INTERFACE:mrpt_terrain_options>)
+    PUBLIC ${targets_arg_USES}
+    PRIVATE ${targets_arg_PRIVATE_USES} $<BUILD_INTERFACE:mrpt_terrain_options>)
   install(TARGETS mrpt_terrain_${name} EXPORT mrpt_terrain_targets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

@@ -26,7 +26,7 @@ struct SensorInfo {
 };
 using SensorKey = std::pair<std::string, std::string>;  // class, label
 
-void add(const mrpt::obs::CObservation& observation, const io::SensorModels& models,
+void add(const mrpt::obs::CObservation& observation, const sensors::SensorModels& models,
          std::map<SensorKey, SensorInfo>& sensors) {
   SensorInfo& sensor = sensors[{observation.GetRuntimeClass()->className, observation.sensorLabel}];
   if (sensor.observations++ == 0) {
@@ -72,7 +72,7 @@ std::string describe_poses(const std::string& file) {
 
 void print_file(const std::string& file, Messages& messages, int& exit_code) {
   messages.info(file + "\n");
-  const io::SensorModels models = load_sensor_models();
+  const sensors::SensorModels models = load_sensor_models();
   const std::unique_ptr<io::ObservationReader> reader = open_input(file);
   std::map<SensorKey, SensorInfo> sensors;
   std::string poses, damage;

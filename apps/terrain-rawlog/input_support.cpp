@@ -71,7 +71,7 @@ void set_externals_dir(const std::string& given, const std::string& rawlog) {
   mrpt::img::CImage::setImagesPathBase(folder);
 }
 
-mrpt_terrain::io::SensorModels load_sensor_models() {
+mrpt_terrain::sensors::SensorModels load_sensor_models() {
   const auto folder = mrpt_terrain::params::find_data_folder() / "params" / "sensors";
-  return mrpt_terrain::io::SensorModels::from_folder(folder.string());
+  return mrpt_terrain::sensors::SensorModels::from_folder(folder.string());
 }

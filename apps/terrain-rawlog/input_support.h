@@ -7,7 +7,7 @@
 #include <string>
 
 #include "mrpt_terrain/io/observation_reader.h"
-#include "mrpt_terrain/io/sensor_model.h"
+#include "mrpt_terrain/sensors/sensor_model.h"
 
 /// Pose from "x y z yaw pitch roll" (metres, degrees; commas and MRPT's brackets allowed; "x y z"
 /// alone is a pose without rotation). Throws std::invalid_argument with the option --sensor-pose
@@ -32,4 +32,4 @@
 void set_externals_dir(const std::string& given, const std::string& rawlog);
 
 /// The beam tables that come with the project.
-[[nodiscard]] mrpt_terrain::io::SensorModels load_sensor_models();
+[[nodiscard]] mrpt_terrain::sensors::SensorModels load_sensor_models();

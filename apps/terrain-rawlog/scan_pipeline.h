@@ -10,14 +10,14 @@
 #include "mrpt_terrain/core/describe.h"
 #include "mrpt_terrain/core/ground_plane.h"
 #include "mrpt_terrain/io/scan.h"
-#include "mrpt_terrain/io/sensor_model.h"
+#include "mrpt_terrain/sensors/sensor_model.h"
 #include "mrpt_terrain/io/trajectory.h"
 #include "mrpt_terrain/view/scan_record.h"
 
 /// From an observation to a described scan; keeps the memory of the last one.
 struct ScanPipeline {
   AppParams params;
-  mrpt_terrain::io::SensorModels models;
+  mrpt_terrain::sensors::SensorModels models;
   std::optional<mrpt::poses::CPose3D> sensor_pose;    ///< replaces that of the observations
   std::optional<mrpt::poses::CPose3D> T_level_robot;  ///< found by `level_by_ground`
   mrpt_terrain::io::Trajectory trajectory;            ///< of the robot; may be empty

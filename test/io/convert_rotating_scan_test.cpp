@@ -17,14 +17,14 @@ using mrpt::obs::CObservationVelodyneScan;
 using testing::kDegrees;
 using testing::rotating_scan;
 
-SensorModels two_rows() {
-  SensorModels models;
+sensors::SensorModels two_rows() {
+  sensors::SensorModels models;
   models.add({"TWO", {}, {10.0 * kDegrees, -20.0 * kDegrees}, 100.0, 10.0, 0, 0.0});
   return models;
 }
 
-SensorModels shipped_models() {
-  return SensorModels::from_folder(MRPT_TERRAIN_SOURCE_DIR "/params/sensors");
+sensors::SensorModels shipped_models() {
+  return sensors::SensorModels::from_folder(MRPT_TERRAIN_SOURCE_DIR "/params/sensors");
 }
 
 TEST(ConvertRotatingScan, LiteralFullTurnCounterClockwise) {
@@ -61,7 +61,7 @@ TEST(ConvertRotatingScan, PartOfATurnEndsWithItsLastColumnAndMayRunClockwise) {
 }
 
 TEST(ConvertRotatingScan, LasersThatFireInTurnLookFartherOn) {
-  SensorModels models;
+  sensors::SensorModels models;
   models.add({"TWO", {}, {0.0, 0.0}, 100.0, 10.0, 0, 0.001});
   auto scan = rotating_scan("TWO", 2, 4);
   scan.sweepDuration = 0.1;  // 3.6 degrees per millisecond
@@ -168,7 +168,7 @@ TEST(ConvertRotatingScan, OracleTheSameSweepAsPacketsAndAsImage) {
     GTEST_SKIP() << packets_file << " or " << image_file << " is missing (mrpt-common)";
   }
   SensorPoints of_packets, of_image;
-  const SensorModels models = shipped_models();
+  const sensors::SensorModels models = shipped_models();
   ASSERT_EQ(convert_observation(*packets, {}, models, of_packets).status, ConversionStatus::kOk);
   ASSERT_EQ(convert_observation(*image, {}, models, of_image).status, ConversionStatus::kOk);
   EXPECT_EQ(of_packets.stamp, of_image.stamp);

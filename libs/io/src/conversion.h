@@ -99,7 +99,8 @@ Conversion convert(const mrpt::obs::CObservationPointCloud& observation, const I
 Conversion convert(const mrpt::obs::CObservation3DRangeScan& observation, const InputParams& params,
                    SensorPoints& result);
 Conversion convert(const mrpt::obs::CObservationRotatingScan& observation,
-                   const InputParams& params, const SensorModels& models, SensorPoints& result);
+                   const InputParams& params, const sensors::SensorModels& models,
+                   SensorPoints& result);
 Conversion convert(const mrpt::obs::CObservation2DRangeScan& observation, const InputParams& params,
                    SensorPoints& result);
 

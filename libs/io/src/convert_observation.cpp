@@ -79,7 +79,7 @@ Conversion planar_scan(const mrpt::obs::CObservation& observation) {
 namespace {
 
 Conversion dispatch(const mrpt::obs::CObservation& observation, const InputParams& params,
-                    const SensorModels& models, SensorPoints& result) {
+                    const sensors::SensorModels& models, SensorPoints& result) {
   using namespace mrpt::obs;  // NOLINT(google-build-using-namespace): five class names
   if (const auto* o = dynamic_cast<const CObservationVelodyneScan*>(&observation)) {
     return convert(*o, params, result);
@@ -109,7 +109,7 @@ Conversion no_points(const mrpt::obs::CObservation& observation, const ReturnCou
 }  // namespace
 
 Conversion convert_observation(const mrpt::obs::CObservation& observation,
-                               const InputParams& params, const SensorModels& models,
+                               const InputParams& params, const sensors::SensorModels& models,
                                SensorPoints& result) {
   result.clear();
   observation.getSensorPose(result.T_robot_sensor);

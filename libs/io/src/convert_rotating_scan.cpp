@@ -50,9 +50,9 @@ Columns columns_of(const RotatingScan& scan, std::size_t rows, std::size_t colum
 struct RowDirection {
   double cos_elevation, sin_elevation, cos_shift, sin_shift;
 };
-using RowDirections = std::array<RowDirection, kMaxSensorRows>;
+using RowDirections = std::array<RowDirection, sensors::kMaxSensorRows>;
 
-RowDirections row_directions(const SensorModel& model, const Columns& columns) {
+RowDirections row_directions(const sensors::SensorModel& model, const Columns& columns) {
   RowDirections rows{};
   const double turn_rate = columns.time_step > 0.0 ? columns.azimuth_step / columns.time_step : 0.0;
   for (std::size_t r = 0; r < model.elevation.size(); ++r) {
@@ -63,8 +63,8 @@ RowDirections row_directions(const SensorModel& model, const Columns& columns) {
   return rows;
 }
 
-void unproject(const RotatingScan& scan, const SensorModel& model, const InputParams& params,
-               SensorPoints& result) {
+void unproject(const RotatingScan& scan, const sensors::SensorModel& model,
+               const InputParams& params, SensorPoints& result) {
   const std::size_t rows = model.elevation.size();
   const auto width = static_cast<std::size_t>(scan.rangeImage.cols());
   const Columns columns = columns_of(scan, rows, width);
@@ -94,7 +94,7 @@ void unproject(const RotatingScan& scan, const SensorModel& model, const InputPa
   sink.finish();
 }
 
-Conversion unknown_model(const RotatingScan& scan, const SensorModels& models) {
+Conversion unknown_model(const RotatingScan& scan, const sensors::SensorModels& models) {
   std::string known;
   for (const auto& model : models.all()) {
     known += (known.empty() ? "" : ", ") + model.name + " (" +
@@ -109,19 +109,20 @@ Conversion unknown_model(const RotatingScan& scan, const SensorModels& models) {
 }  // namespace
 
 Conversion convert(const RotatingScan& observation, const InputParams& params,
-                   const SensorModels& models, SensorPoints& result) {
+                   const sensors::SensorModels& models, SensorPoints& result) {
   const auto rows = static_cast<std::size_t>(observation.rangeImage.rows());
   if (rows == 0 || observation.rangeImage.cols() == 0) {
     return {ConversionStatus::kNoPoints, name_of(observation) + " has an empty range image"};
   }
   if (rows == 1) {
     if (is_level(observation.sensorPose)) return planar_scan(observation);
-    unproject(observation, SensorModel{"planar", {}, {0.0}, observation.maxRange, 0.0, 0, 0.0},
-              params, result);
+    unproject(observation,
+              sensors::SensorModel{"planar", {}, {0.0}, observation.maxRange, 0.0, 0, 0.0}, params,
+              result);
     return {ConversionStatus::kOk, {}};
   }
-  const SensorModel* model = models.find(observation.lidarModel);
-  if (model == nullptr || model->elevation.size() != rows || rows > kMaxSensorRows) {
+  const sensors::SensorModel* model = models.find(observation.lidarModel);
+  if (model == nullptr || model->elevation.size() != rows || rows > sensors::kMaxSensorRows) {
     return unknown_model(observation, models);
   }
   unproject(observation, *model, params, result);

@@ -13,8 +13,8 @@
 
 #include "mrpt_terrain/core/param_info.h"
 #include "mrpt_terrain/core/points.h"
-#include "mrpt_terrain/io/sensor_model.h"
 #include "mrpt_terrain/io/trajectory.h"
+#include "mrpt_terrain/sensors/sensor_model.h"
 
 namespace mrpt_terrain::io {
 
@@ -92,7 +92,7 @@ struct Conversion {
 /// CObservationPointCloud, CObservation3DRangeScan, CObservationRotatingScan,
 /// CObservation2DRangeScan. Loads externally stored data and unloads what it loaded.
 Conversion convert_observation(const mrpt::obs::CObservation& observation,
-                               const InputParams& params, const SensorModels& models,
+                               const InputParams& params, const sensors::SensorModels& models,
                                SensorPoints& result);
 
 /// Memory that `to_robot_frame` reuses from scan to scan; means nothing to anyone else.

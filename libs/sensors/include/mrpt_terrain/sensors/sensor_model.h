@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace mrpt_terrain::io {
+namespace mrpt_terrain::sensors {
 
 /// Greatest number of rows that a beam table may have.
 inline constexpr std::size_t kMaxSensorRows = 256;
@@ -39,4 +39,4 @@ class SensorModels {
   std::vector<SensorModel> models_;
 };
 
-}  // namespace mrpt_terrain::io
+}  // namespace mrpt_terrain::sensors

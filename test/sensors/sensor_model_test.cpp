@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mrpt_terrain/io/sensor_model.h"
+#include "mrpt_terrain/sensors/sensor_model.h"
 
 #include <gtest/gtest.h>
 #include <mrpt/obs/VelodyneCalibration.h>
@@ -9,7 +9,7 @@
 
 #include "observations.h"
 
-namespace mrpt_terrain::io {
+namespace mrpt_terrain::sensors {
 namespace {
 
 using testing::fresh_folder;
@@ -123,4 +123,4 @@ TEST(SensorModels, RefusesFoldersWithoutModels) {
 }
 
 }  // namespace
-}  // namespace mrpt_terrain::io
+}  // namespace mrpt_terrain::sensors

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mrpt_terrain/io/sensor_model.h"
+#include "mrpt_terrain/sensors/sensor_model.h"
 
 #include <mrpt/containers/yaml.h>
 
@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace mrpt_terrain::io {
+namespace mrpt_terrain::sensors {
 namespace {
 
 using mrpt::containers::yaml;
@@ -202,4 +202,4 @@ const SensorModel* SensorModels::find(const std::string& name) const {
   return model == models_.end() ? nullptr : &*model;
 }
 
-}  // namespace mrpt_terrain::io
+}  // namespace mrpt_terrain::sensors
