@@ -393,5 +393,67 @@ TEST(RayCaster, MoversAgreeWithBlocksThatStandWhereTheyAre) {
   EXPECT_GT(met, 3000U);
 }
 
+/// Hills under grass of 0.15 m in a turned rectangle.
+World grassy_hills() {
+  World world;
+  world.solids.resize(2);
+  worlds::add_height_field(world, 200, 0.1, worlds::uneven_height);
+  Medium grass;
+  grass.solid = 1;
+  grass.height = 0.15;
+  grass.density = 1.5;
+  grass.T_map_medium.rotate(Eigen::AngleAxisd(0.4, Vector3d::UnitZ()));
+  grass.half_extent = {6.0, 5.0, 0.0};
+  world.media.push_back(grass);
+  return world;
+}
+
+/// Metres of a ray in the grass, in steps of 2 mm.
+double path_in_grass(const RayCaster& caster, const Ray& ray, double end) {
+  constexpr double kStep = 0.002;
+  const Medium& grass = caster.world().media[0];
+  double path = 0.0;
+  for (double t = 0.5 * kStep; t < end; t += kStep) {
+    const Vector3d p = ray.origin + t * ray.direction;
+    const Vector3d own = grass.T_map_medium.inverse() * p;
+    const auto terrain = caster.terrain_at(p.x(), p.y());
+    if (terrain && std::abs(own.x()) <= 6.0 && std::abs(own.y()) <= 5.0 &&
+        p.z() - terrain->height <= grass.height) {
+      path += kStep;
+    }
+  }
+  return path;
+}
+
+// Rays that graze several crests; the share that gets through is exp(-density * path).
+TEST(RayCaster, RaysThroughGrassOnHillsAreStoppedByItsWholePath) {
+  const World world = grassy_hills();
+  const RayCaster caster(world);
+  constexpr int kTrials = 4000;
+  RandomGenerator random(17);
+  double total = 0.0;
+  for (int k = 0; k < 12; ++k) {
+    const double angle = 2.0 * M_PI * random.uniform();
+    const double x = -9.0 * std::cos(angle), y = -9.0 * std::sin(angle);
+    const Ray ray{{x, y, 0.3 + 0.5 * random.uniform()},
+                  Vector3d(std::cos(angle), std::sin(angle), -0.03).normalized()};
+    Rays rays;
+    for (int trial = 0; trial < kTrials; ++trial) add_ray(rays, ray);
+    Hits hits;
+    caster.cast(rays, 18.0, hits);
+    const double end = std::min(18.0, hits.range[0]);
+    const double path = path_in_grass(caster, ray, end);
+    total += path;
+    caster.scatter(rays, 18.0, 5, 0, hits);
+    const auto stopped = std::count(hits.solid.begin(), hits.solid.end(), 1);
+    const double expected = 1.0 - std::exp(-1.5 * path);
+    // Four standard deviations, and 10 steps of the oracle.
+    EXPECT_NEAR(static_cast<double>(stopped) / kTrials, expected,
+                4.0 * std::sqrt(expected * (1.0 - expected) / kTrials) + 1.5 * 10 * 0.002)
+        << "ray " << k << ", path " << path;
+  }
+  EXPECT_GT(total, 3.0) << "the rays miss the grass";
+}
+
 }  // namespace
 }  // namespace mrpt_terrain::sim
