@@ -307,6 +307,27 @@ TEST(RayCaster, TerrainOfManyPlacesIsThatOfEachPlace) {
   }
 }
 
+// Along the vertical wall between two levels, where no triangle of the terrain lies across.
+TEST(RayCaster, TerrainIsWholeAlongVerticalWalls) {
+  RandomGenerator random(23);
+  for (int trial = 0; trial < 50; ++trial) {
+    const double x0 = -3.0 - random.uniform(), x1 = 2.0 * random.uniform() - 1.0,
+                 x2 = 3.0 + random.uniform();
+    World world;
+    worlds::add_patch(world.mesh, {x0, x0, 0}, {x1 - x0, 0, 0}, {0, x2 - x0, 0}, 0,
+                      SurfaceKind::kDrivable);
+    worlds::add_patch(world.mesh, {x1, x0, -0.3}, {x2 - x1, 0, 0}, {0, x2 - x0, 0}, 1,
+                      SurfaceKind::kDrivable);
+    worlds::add_patch(world.mesh, {x1, x0, -0.3}, {0, x2 - x0, 0}, {0, 0, 0.3}, 1,
+                      SurfaceKind::kFlank);
+    const RayCaster caster(world);
+    for (int k = 0; k < 2000; ++k) {
+      const double y = x0 + (x2 - x0) * random.uniform();
+      ASSERT_TRUE(caster.terrain_at(x1, y)) << x1 << " " << y;
+    }
+  }
+}
+
 /// A pothole of 1 m x 1 m x 0.2 m in the middle of a square of 4 m, with a sloped flank at its far
 /// side.
 World pothole_world() {

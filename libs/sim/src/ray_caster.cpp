@@ -94,19 +94,21 @@ void RayCaster::scatter(const Rays& rays, double max_range, std::uint64_t seed,
 
 void RayCaster::Impl::look_down(const TriangleSet& set, const double* x, const double* y,
                                 std::size_t n, std::optional<TerrainPoint>* result) const {
-  const Eigen::Vector3d low = set.min_corner(), high = set.max_corner();
-  const double top = high.z() + 1.0;
+  // Embree may miss the very edge: places there move inwards by what single precision cannot tell.
+  const Eigen::Vector2d low = set.min_corner().head<2>(), high = set.max_corner().head<2>();
+  const double margin = 1e-6 * (high - low).norm();
+  const double top = set.max_corner().z() + 1.0;
+  const double reach = top - set.min_corner().z() + 1.0;
   RayBlock block;
   block.size = n;
   for (std::size_t k = 0; k < n; ++k) {
-    // Single precision could take a place just outside for the edge.
     const bool inside = x[k] >= low.x() && x[k] <= high.x() && y[k] >= low.y() && y[k] <= high.y();
-    block.ox[k] = inside ? x[k] : kInfinity;
-    block.oy[k] = y[k];
+    block.ox[k] = inside ? std::clamp(x[k], low.x() + margin, high.x() - margin) : kInfinity;
+    block.oy[k] = inside ? std::clamp(y[k], low.y() + margin, high.y() - margin) : kInfinity;
     block.oz[k] = top;
     block.dx[k] = block.dy[k] = 0.0;
     block.dz[k] = -1.0;
-    block.max_range[k] = top - low.z() + 1.0;
+    block.max_range[k] = reach;
   }
   BlockHits found;
   set.cast(block, found);
@@ -115,7 +117,10 @@ void RayCaster::Impl::look_down(const TriangleSet& set, const double* x, const d
     if (found.triangle[k] == kNoTriangle) continue;
     Eigen::Vector3d normal = set.normal(found.triangle[k]);
     if (normal.z() < 0.0) normal = -normal;
-    result[k] = TerrainPoint{top - found.range[k], normal, world.mesh.solid[found.triangle[k]]};
+    const double shift = normal.x() * (x[k] - block.ox[k]) + normal.y() * (y[k] - block.oy[k]);
+    const double rise = normal.z() > 1e-3 ? -shift / normal.z() : 0.0;
+    result[k] =
+        TerrainPoint{top - found.range[k] + rise, normal, world.mesh.solid[found.triangle[k]]};
   }
 }
 
