@@ -9,6 +9,16 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// A ray that counts for nothing; Embree reads some of the numbers of such rays nevertheless.
+void blank(std::size_t k, RayPacket& packet) {
+  for (auto* field : {packet.ray.org_x, packet.ray.org_y, packet.ray.org_z, packet.ray.dir_x,
+                      packet.ray.dir_y, packet.ray.dir_z, packet.ray.tnear, packet.ray.time}) {
+    field[k] = 0.0F;
+  }
+  packet.ray.tfar[k] = -1.0F;
+  packet.ray.mask[k] = packet.ray.id[k] = packet.ray.flags[k] = 0;
+}
+
 }  // namespace
 
 bool is_castable(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
@@ -100,7 +110,11 @@ void TriangleSet::cast(const RayBlock& rays, BlockHits& hits) const {
     hits.range[k] = kInfinity;
     hits.triangle[k] = kNoTriangle;
     hits.cos_incidence[k] = 1.0;
-    if (castable) load(rays, k, packet);
+    if (castable) {
+      load(rays, k, packet);
+    } else {
+      blank(k, packet);
+    }
   }
   scene_->intersect(valid, packet);
   for (std::size_t k = 0; k < rays.size; ++k) {
