@@ -21,12 +21,6 @@ void blank(std::size_t k, RayPacket& packet) {
 
 }  // namespace
 
-bool is_castable(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  const double square = direction.squaredNorm();
-  // Embree's own limit is 1e18; nobody is that far away.
-  return square > 0.0 && square < 1e15 && origin.squaredNorm() < 1e30;
-}
-
 TriangleSet::TriangleSet(const Mesh& mesh, Part part) {
   for (std::uint32_t t = 0; t < mesh.size(); ++t) {
     if (part == Part::kAll || mesh.kind[t] != SurfaceKind::kObject) triangle_.push_back(t);
