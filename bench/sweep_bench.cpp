@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "allocation_counter.h"
@@ -71,6 +72,49 @@ void sweep_of_32_rings(benchmark::State& state) {
       benchmark::Counter::kIsIterationInvariantRate);
 }
 BENCHMARK(sweep_of_32_rings)->Arg(1)->Arg(5)->Unit(benchmark::kMillisecond);
+
+/// Half of the ground under grass, twenty bushes, and five walkers.
+void sweep_of_a_meadow(benchmark::State& state) {
+  Drive drive(5);
+  sim::World& world = drive.world;
+  world.solids.resize(2);
+  sim::Medium grass;
+  grass.solid = 1;
+  grass.height = 0.15;
+  grass.density = 2.0;
+  grass.half_extent = {19.0, 9.5, 0.0};
+  grass.T_map_medium.translation().y() = 10.0;
+  world.media.push_back(grass);
+  for (int k = 0; k < 20; ++k) {
+    sim::Medium bush;
+    bush.solid = 1;
+    bush.form = sim::Medium::Form::kEllipsoid;
+    bush.half_extent = {0.7, 0.7, 1.0};
+    bush.density = 3.0;
+    bush.T_map_medium.translation() = Eigen::Vector3d(1.7 * k - 16.0, -6.0 - 0.5 * k, 0.5);
+    world.media.push_back(bush);
+  }
+  for (int k = 0; k < 5; ++k) {
+    sim::Mover walker;
+    walker.solid = 1;
+    worlds::add_box(walker.mesh, {-0.2, -0.3, 0}, {0.2, 0.3, 1.8}, 1);
+    walker.from = {4.0, 2.0 * k - 4.0, 0.0};
+    walker.to = {9.0, 2.0 * k - 4.0, 0.0};
+    walker.speed = 1.3;
+    world.movers.push_back(walker);
+  }
+  const sim::RayCaster caster(world);
+  sim::SweepWorkspace workspace;
+  sim::Sweep sweep;
+  std::uint64_t stream = 0;
+  for (auto _ : state) {
+    simulate_sweep(caster, drive.sensor, drive.motion, 0.0, 1, ++stream, workspace, sweep);
+  }
+  if (std::count(sweep.solid.begin(), sweep.solid.end(), 1) < 1000) {
+    state.SkipWithError("nothing returns from the meadow");
+  }
+}
+BENCHMARK(sweep_of_a_meadow)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace mrpt_terrain::bench

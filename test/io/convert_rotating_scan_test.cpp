@@ -72,6 +72,19 @@ TEST(ConvertRotatingScan, LasersThatFireInTurnLookFartherOn) {
   EXPECT_NEAR(std::atan2(points.points.y[1], points.points.x[1]), 3.6 * kDegrees, 1e-6);
 }
 
+TEST(ConvertRotatingScan, RowsThatLookAsideAreTurned) {
+  sensors::SensorModel model{"TWO", {}, {0.0, 0.0}, 100.0, 10.0, 0, 0.0};
+  model.azimuth_offset = {2.0 * kDegrees, -3.0 * kDegrees};
+  sensors::SensorModels models;
+  models.add(model);
+  auto scan = rotating_scan("TWO", 2, 4);
+  scan.rangeImage(0, 2) = scan.rangeImage(1, 2) = 100;
+  SensorPoints points;
+  ASSERT_EQ(convert_observation(scan, {}, models, points).status, ConversionStatus::kOk);
+  EXPECT_NEAR(std::atan2(points.points.y[0], points.points.x[0]), 2.0 * kDegrees, 1e-6);
+  EXPECT_NEAR(std::atan2(points.points.y[1], points.points.x[1]), -3.0 * kDegrees, 1e-6);
+}
+
 TEST(ConvertRotatingScan, UnknownModelsAreRefusedWithTheirNameAndRows) {
   SensorPoints points;
   for (const auto& [model, rows] : {std::pair{"OTHER", 2}, std::pair{"TWO", 3}}) {

@@ -360,6 +360,35 @@ TEST(RayCaster, TerrainIsWholeOverPotholes) {
   }
 }
 
+TEST(RayCaster, TerrainHasNoGapsInABuiltScene) {
+  Scene scene;
+  scene.ground.length = scene.ground.width = 12.0;
+  scene.ground.form = GroundForm::kFractal;
+  Pothole hole;
+  scene.solids.push_back({{}, hole, ""});
+  scene.solids.push_back({{}, Curb{}, ""});
+  scene.solids.push_back({{}, Person{}, ""});
+  for (std::size_t k = 0; k < scene.solids.size(); ++k) {
+    scene.solids[k].placement.id = static_cast<int>(k + 1);
+    scene.solids[k].placement.y = 2.5 * static_cast<double>(k) - 3.0;
+    scene.solids[k].placement.yaw = 0.3 * static_cast<double>(k);
+  }
+  const World world = build_world(scene);
+  const RayCaster caster(world);
+  std::vector<double> x, y;
+  for (int j = 0; j <= 300; ++j) {
+    for (int i = 0; i <= 300; ++i) {
+      x.push_back(-6.0 + 0.04 * i);
+      y.push_back(-6.0 + 0.04 * j);
+    }
+  }
+  for (double& v : x) v = std::clamp(v, world.min_corner.x(), world.max_corner.x());
+  for (double& v : y) v = std::clamp(v, world.min_corner.y(), world.max_corner.y());
+  std::vector<std::optional<TerrainPoint>> terrain;
+  caster.terrain_under(x, y, terrain);
+  for (std::size_t k = 0; k < x.size(); ++k) ASSERT_TRUE(terrain[k]) << x[k] << " " << y[k];
+}
+
 /// Somebody 0.4 m deep, 0.6 m wide and 1.8 m high who walks along y at x = 5.
 World walker_world() {
   World world = ground_and_box();

@@ -487,6 +487,20 @@ TEST(Sweep, MixedRangeIsTheMeanByStrength) {
   EXPECT_GT(between(depths, expected - 0.003, expected + 0.003), 10U);
 }
 
+TEST(Sweep, IntensityFallsWithDarknessAngleAndRange) {
+  World world = level_world(100.0);
+  const auto intensity = [&](double elevation_deg, double height) {
+    return int{sweep_of(world, down_looking({elevation_deg}, 1, height)).intensity[0]};
+  };
+  const int straight = intensity(-90, 5), oblique = intensity(-20, 5), far = intensity(-90, 60);
+  EXPECT_LT(oblique, straight);
+  EXPECT_LT(far, straight);
+  EXPECT_NEAR(straight, 255 * reflectivity(Material::kConcrete), 2);
+  world.solids[0].material = Material::kAsphalt;
+  EXPECT_LT(intensity(-90, 5), straight);
+  EXPECT_GE(intensity(-1, 1), 1);
+}
+
 TEST(Sweep, ModelWithoutTimingIsRefused) {
   sensors::SensorModel model = perfect_sensor({0.0}, 10);
   model.rate = 0.0;

@@ -56,7 +56,8 @@ RowDirections row_directions(const sensors::SensorModel& model, const Columns& c
   RowDirections rows{};
   const double turn_rate = columns.time_step > 0.0 ? columns.azimuth_step / columns.time_step : 0.0;
   for (std::size_t r = 0; r < model.elevation.size(); ++r) {
-    const double shift = turn_rate * model.laser_interval * static_cast<double>(r);
+    const double offset = model.azimuth_offset.empty() ? 0.0 : model.azimuth_offset[r];
+    const double shift = turn_rate * model.laser_interval * static_cast<double>(r) + offset;
     rows[r] = {std::cos(model.elevation[r]), std::sin(model.elevation[r]), std::cos(shift),
                std::sin(shift)};
   }

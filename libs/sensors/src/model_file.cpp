@@ -82,7 +82,9 @@ params::Document ModelFile::section(const std::string& key) const {
   params::Document document{file_, {{key, {}}}};
   for (const auto& entry : map) {
     const auto name = entry.first.as<std::string>();
-    document.sections[0].keys.push_back({name, text_of(key + "." + name, entry.second)});
+    std::string path = key;
+    path.append(".").append(name);
+    document.sections[0].keys.push_back({name, text_of(path, entry.second)});
   }
   return document;
 }
@@ -99,7 +101,7 @@ YAML::Node ModelFile::list(const std::string& key) const {
 }
 
 std::string ModelFile::text_of(const std::string& key, const YAML::Node& node) const {
-  const std::string text = node.IsScalar() ? node.Scalar() : std::string();
+  std::string text = node.IsScalar() ? node.Scalar() : std::string();
   if (text.empty())
     throw std::runtime_error(place(node) + key + ": must be a text that is not empty");
   return text;

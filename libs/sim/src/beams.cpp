@@ -25,7 +25,7 @@ void add_beam(double elevation, double azimuth, const sensors::SensorNoise& nois
 }  // namespace
 
 BeamTable::BeamTable(const sensors::SensorModel& model)
-    : sub_rays(static_cast<std::size_t>(model.noise.sub_rays)) {
+    : sub_rays(model.noise.sub_rays == 1 ? 1 : 5) {
   for (std::size_t ring = 0; ring < model.elevation.size(); ++ring) {
     add_beam(model.elevation[ring], model.azimuth(0, ring) - model.start_azimuth, model.noise,
              directions);

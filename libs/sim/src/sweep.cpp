@@ -92,6 +92,7 @@ void finish_column(const Turn& turn, const Tile& tile, std::size_t k, RandomGene
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-function-size): what a sweep depends on, each part by itself.
 void simulate_sweep(const RayCaster& caster, const MountedSensor& sensor, const Motion& motion,
                     double start_time, std::uint64_t seed, std::uint64_t stream,
                     SweepWorkspace& workspace, Sweep& sweep) {

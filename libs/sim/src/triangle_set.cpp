@@ -9,13 +9,17 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-}  // namespace
-
-bool is_castable(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  const double square = direction.squaredNorm();
-  // Embree's own limit is 1e18; nobody is that far away.
-  return square > 0.0 && square < 1e15 && origin.squaredNorm() < 1e30;
+/// A ray that counts for nothing; Embree reads some of the numbers of such rays nevertheless.
+void blank(std::size_t k, RayPacket& packet) {
+  for (auto* field : {packet.ray.org_x, packet.ray.org_y, packet.ray.org_z, packet.ray.dir_x,
+                      packet.ray.dir_y, packet.ray.dir_z, packet.ray.tnear, packet.ray.time}) {
+    field[k] = 0.0F;
+  }
+  packet.ray.tfar[k] = -1.0F;
+  packet.ray.mask[k] = packet.ray.id[k] = packet.ray.flags[k] = 0;
 }
+
+}  // namespace
 
 TriangleSet::TriangleSet(const Mesh& mesh, Part part) {
   for (std::uint32_t t = 0; t < mesh.size(); ++t) {
@@ -100,7 +104,11 @@ void TriangleSet::cast(const RayBlock& rays, BlockHits& hits) const {
     hits.range[k] = kInfinity;
     hits.triangle[k] = kNoTriangle;
     hits.cos_incidence[k] = 1.0;
-    if (castable) load(rays, k, packet);
+    if (castable) {
+      load(rays, k, packet);
+    } else {
+      blank(k, packet);
+    }
   }
   scene_->intersect(valid, packet);
   for (std::size_t k = 0; k < rays.size; ++k) {

@@ -29,7 +29,12 @@ struct BlockHits {
 };
 
 /// Whether a ray can meet anything: finite numbers and a direction that is not zero.
-[[nodiscard]] bool is_castable(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
+[[nodiscard]] inline bool is_castable(const Eigen::Vector3d& origin,
+                                      const Eigen::Vector3d& direction) {
+  const double square = direction.squaredNorm();
+  // Embree's own limit is 1e18; nobody is that far away.
+  return square > 0.0 && square < 1e15 && origin.squaredNorm() < 1e30;
+}
 
 [[nodiscard]] inline Eigen::Vector3d origin_of(const Rays& rays, std::size_t ray) {
   return {rays.origin_x[ray], rays.origin_y[ray], rays.origin_z[ray]};
