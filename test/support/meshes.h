@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "mrpt_terrain/sim/world.h"
@@ -44,6 +45,39 @@ inline void add_ground(sim::World& world, double x, double y, double z, double h
             sim::kGroundSolid, sim::SurfaceKind::kDrivable);
   world.min_corner = {x - half_size, y - half_size};
   world.max_corner = {x + half_size, y + half_size};
+}
+
+/// A drivable grid of `cells` x `cells` squares about the origin with heights height(x, y), shared
+/// vertices, two triangles per square.
+template <class Height>
+void add_height_field(sim::World& world, int cells, double spacing, Height&& height) {
+  sim::Mesh& mesh = world.mesh;
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const double low = -0.5 * cells * spacing;
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= cells; ++i) {
+      const double x = low + i * spacing, y = low + j * spacing;
+      mesh.vertices.emplace_back(x, y, height(x, y));
+    }
+  }
+  const auto row = static_cast<std::uint32_t>(cells + 1);
+  for (std::uint32_t j = 0; j + 1 < row; ++j) {
+    for (std::uint32_t i = 0; i + 1 < row; ++i) {
+      const std::uint32_t a = first + j * row + i, b = a + 1, c = b + row, d = a + row;
+      mesh.triangles.push_back({a, b, c});
+      mesh.triangles.push_back({a, c, d});
+    }
+  }
+  mesh.solid.resize(mesh.size(), sim::kGroundSolid);
+  mesh.kind.resize(mesh.size(), sim::SurfaceKind::kDrivable);
+  world.min_corner.setConstant(low);
+  world.max_corner.setConstant(-low);
+}
+
+/// Gentle hills and short bumps.
+[[nodiscard]] inline double uneven_height(double x, double y) {
+  return 0.6 * std::sin(0.25 * x) * std::cos(0.31 * y) + 0.05 * std::sin(1.7 * x + 0.4 * y) +
+         0.02 * std::cos(3.1 * y - 0.8 * x);
 }
 
 }  // namespace mrpt_terrain::worlds
