@@ -108,8 +108,10 @@ Rgb mixed(Rgb a, Rgb b, double share_of_b) {
   return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
 }
 
-/// Ground in pale colours, so that things stand out.
-Rgb ground_colour(double share) { return mixed(height_colour(share), kWhite, 0.35); }
+/// The colours of classes are left to the things: ground goes from a dull green to nearly white.
+Rgb ground_colour(double share) {
+  return mixed({118, 132, 118}, {248, 245, 234}, std::clamp(share, 0.0, 1.0));
+}
 
 std::int32_t thing_at(const SitePlan& plan, int column, int row) {
   return plan.thing.at(std::clamp(column, 0, plan.thing.width - 1),
