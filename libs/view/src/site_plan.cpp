@@ -64,11 +64,13 @@ struct Span {
   [[nodiscard]] double share(double height) const { return (height - low) / (high - low); }
 };
 
-/// Without the lowest and highest two per cent, which may be a single mast.
-Span height_span(const Raster<float>& heights) {
+/// Of the ground, without the lowest and highest two per cent.
+Span height_span(const SitePlan& plan) {
   std::vector<float> known;
-  std::copy_if(heights.values.begin(), heights.values.end(), std::back_inserter(known),
-               [](float height) { return !std::isnan(height); });
+  for (std::size_t k = 0; k < plan.heights.values.size(); ++k) {
+    const float height = plan.heights.values[k];
+    if (!std::isnan(height) && plan.thing.values[k] < 0) known.push_back(height);
+  }
   if (known.empty()) return {0.0, kLeastSpan};
   std::sort(known.begin(), known.end());
   const std::size_t cut = known.size() / 50;
@@ -110,7 +112,7 @@ Rgb mixed(Rgb a, Rgb b, double share_of_b) {
 
 /// The colours of classes are left to the things: ground goes from a dull green to nearly white.
 Rgb ground_colour(double share) {
-  return mixed({118, 132, 118}, {248, 245, 234}, std::clamp(share, 0.0, 1.0));
+  return mixed({150, 166, 150}, {250, 247, 238}, std::clamp(share, 0.0, 1.0));
 }
 
 std::int32_t thing_at(const SitePlan& plan, int column, int row) {
@@ -246,6 +248,23 @@ std::vector<Box> path_boxes(const SitePlan& plan, const Panel& panel) {
   return boxes;
 }
 
+/// Pixels that a number would hide: those of things that are not much larger than a number.
+Raster<std::uint8_t> small_things(const SitePlan& plan) {
+  constexpr int kLargeArea = 1600;  // pixels
+  std::vector<int> area(plan.things.size());
+  for (const std::int32_t thing : plan.thing.values) {
+    if (thing >= 0) ++area[static_cast<std::size_t>(thing)];
+  }
+  Raster<std::uint8_t> busy(plan.thing.width, plan.thing.height);
+  std::transform(plan.thing.values.begin(), plan.thing.values.end(), busy.values.begin(),
+                 [&](std::int32_t thing) {
+                   const bool small =
+                       thing >= 0 && area[static_cast<std::size_t>(thing)] < kLargeArea;
+                   return static_cast<std::uint8_t>(small ? 1 : 0);
+                 });
+  return busy;
+}
+
 void draw_numbers(Canvas& canvas, const SitePlan& plan, const Panel& panel) {
   std::vector<LabelRequest> requests;
   for (const PlanThing& thing : plan.things) {
@@ -253,9 +272,7 @@ void draw_numbers(Canvas& canvas, const SitePlan& plan, const Panel& panel) {
     const double width = std::ceil(canvas.text_width(std::to_string(thing.id), kNumber)) + 7.0;
     requests.push_back({pixel.x - kLeft, pixel.y - kTop, width, 15.0});
   }
-  Raster<std::uint8_t> busy(panel.width, panel.height);
-  std::transform(plan.thing.values.begin(), plan.thing.values.end(), busy.values.begin(),
-                 [](std::int32_t thing) { return static_cast<std::uint8_t>(thing >= 0 ? 1 : 0); });
+  const Raster<std::uint8_t> busy = small_things(plan);
   const auto places = place_labels(requests, busy, path_boxes(plan, panel));
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (!places[k]) continue;
@@ -347,7 +364,7 @@ void write_site_plan(const std::string& file, const SitePlan& plan) {
   const int width = std::max(kLeft + panel.width, 560) + kTableWidth;
   const int height = std::max(kTop + panel.height + kKeyHeight, kLeastHeight);
   Canvas canvas(width, height);
-  const Span span = height_span(plan.heights);
+  const Span span = height_span(plan);
   draw_frame(canvas, plan);
   paint_site(canvas, plan, panel, span);
   draw_grid(canvas, panel);
