@@ -28,6 +28,25 @@ RayBlock block_of(const Rays& rays, std::size_t first, double max_range) {
   return block;
 }
 
+// Rays from the terrain start above it by more than single precision may lose.
+constexpr double kAboveTerrain = 1e-3;
+
+RayBlock block_above(const double* x, const double* y, const double* z, std::size_t n,
+                     const Eigen::Vector3d& direction) {
+  RayBlock block;
+  block.size = n;
+  for (std::size_t k = 0; k < n; ++k) {
+    block.ox[k] = x[k];
+    block.oy[k] = y[k];
+    block.oz[k] = z[k] + kAboveTerrain;
+    block.dx[k] = direction.x();
+    block.dy[k] = direction.y();
+    block.dz[k] = direction.z();
+    block.max_range[k] = kInfinity;
+  }
+  return block;
+}
+
 }  // namespace
 
 void Rays::resize(std::size_t n) {
@@ -54,6 +73,11 @@ struct RayCaster::Impl {
   /// The highest triangle of a set over each of up to kPacket places.
   void look_down(const TriangleSet& set, const double* x, const double* y, std::size_t n,
                  std::optional<TerrainPoint>* result) const;
+
+  /// Whether a ray in that direction comes from behind the triangle; false for kNoTriangle.
+  [[nodiscard]] bool leaves_solid(std::uint32_t triangle, const Eigen::Vector3d& direction) const {
+    return triangle != kNoTriangle && all.normal(triangle).dot(direction) > 0.0;
+  }
 
   const World& world;
   TriangleSet all;
@@ -120,7 +144,8 @@ void RayCaster::Impl::look_down(const TriangleSet& set, const double* x, const d
     const double shift = normal.x() * (x[k] - block.ox[k]) + normal.y() * (y[k] - block.oy[k]);
     const double rise = normal.z() > 1e-3 ? -shift / normal.z() : 0.0;
     result[k] =
-        TerrainPoint{top - found.range[k] + rise, normal, world.mesh.solid[found.triangle[k]]};
+        TerrainPoint{top - found.range[k] + rise, normal, world.mesh.solid[found.triangle[k]],
+                     world.mesh.kind[found.triangle[k]]};
   }
 }
 
@@ -151,6 +176,29 @@ void RayCaster::tops_under(const std::vector<double>& x, const std::vector<doubl
   for (std::size_t first = 0; first < x.size(); first += kPacket) {
     impl_->look_down(impl_->all, &x[first], &y[first], std::min(kPacket, x.size() - first),
                      &result[first]);
+  }
+}
+
+void RayCaster::free_heights_over(const std::vector<double>& x, const std::vector<double>& y,
+                                  const std::vector<double>& z, std::vector<double>& result) const {
+  // Whatever way a ray leaves a solid, it meets an outer side from behind. Straight up alone would
+  // not do: the top of a leg and the slab on it are one plane. No solid lies along this direction.
+  static const Eigen::Vector3d kOblique(0.6, 0.64, 0.48);
+  result.resize(x.size());
+  BlockHits found;
+  for (std::size_t first = 0; first < x.size(); first += kPacket) {
+    const std::size_t n = std::min(kPacket, x.size() - first);
+    RayBlock block = block_above(&x[first], &y[first], &z[first], n, Eigen::Vector3d::UnitZ());
+    impl_->all.cast(block, found);
+    for (std::size_t k = 0; k < n; ++k) {
+      const bool inside = impl_->leaves_solid(found.triangle[k], Eigen::Vector3d::UnitZ());
+      result[first + k] = inside ? 0.0 : found.range[k] + kAboveTerrain;
+    }
+    block = block_above(&x[first], &y[first], &z[first], n, kOblique);
+    impl_->all.cast(block, found);
+    for (std::size_t k = 0; k < n; ++k) {
+      if (impl_->leaves_solid(found.triangle[k], kOblique)) result[first + k] = 0.0;
+    }
   }
 }
 

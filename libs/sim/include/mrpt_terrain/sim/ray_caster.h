@@ -35,6 +35,7 @@ struct TerrainPoint {
   double height = 0.0;                                ///< metres
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, upwards
   std::int32_t solid = kGroundSolid;
+  SurfaceKind kind = SurfaceKind::kDrivable;
 };
 
 /// Casts rays into a world by Embree; ranges are taken again in double precision from the triangle
@@ -70,6 +71,13 @@ class RayCaster {
                      std::vector<std::optional<TerrainPoint>>& result) const;
   void tops_under(const std::vector<double>& x, const std::vector<double>& y,
                   std::vector<std::optional<TerrainPoint>>& result) const;
+
+  /// Free space over places of the terrain, metres: from `z`, a height of the terrain, to the
+  /// lowest surface of what hangs over it (tables, bridges). 0 where the place lies inside of a
+  /// solid, infinite where nothing hangs over it.
+  /// \param result one per place; its memory is used again
+  void free_heights_over(const std::vector<double>& x, const std::vector<double>& y,
+                         const std::vector<double>& z, std::vector<double>& result) const;
 
   [[nodiscard]] const World& world() const;
 
