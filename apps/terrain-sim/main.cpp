@@ -74,6 +74,10 @@ void add_outputs(CLI::App& app, SimOptions& options) {
                "Write points as if the robot had stood still during each sweep");
   app.add_flag_callback(
       "--no-truth", [&options] { options.truth = false; }, "Write no truth files");
+  app.add_option("--cell-size", options.cell_size, "Of the grid in the truth files")
+      ->type_name("M")
+      ->check(CLI::Range(0.01, 10.0).description(""))
+      ->capture_default_str();
   app.add_option("--preview", options.preview, "Picture of the scene from above (PNG)")
       ->type_name("FILE.png");
 }

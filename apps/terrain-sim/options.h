@@ -28,7 +28,8 @@ struct SimOptions {
   bool packets = false;
   bool deskewed = false;
   bool truth = true;
-  std::string preview;  ///< PNG; empty: none
+  double cell_size = 0.1;  ///< metres, of the truth
+  std::string preview;     ///< PNG; empty: none
   Verbosity verbosity = Verbosity::kInfo;
 };
 

@@ -9,15 +9,13 @@
 
 #include "mrpt_terrain/view/site_plan.h"
 #include "mrpt_terrain/view/text.h"
+#include "surroundings.h"
 
 using namespace mrpt_terrain;
 
 namespace {
 
-constexpr double kFootRadius = 0.3;         // metres, of things that walk
-constexpr double kPathInterval = 0.1;       // seconds
-constexpr double kLeastSurroundings = 6.0;  // metres about the path
-constexpr double kMargin = 1.0;             // metres about things
+constexpr double kFootRadius = 0.3;  // metres, of things that walk
 
 /// The ground is no thing of the plan.
 std::int32_t thing_of(std::int32_t solid) { return solid <= sim::kGroundSolid ? -1 : solid - 1; }
@@ -31,28 +29,6 @@ std::vector<view::PlanThing> things_of(const sim::World& world) {
         {solid.id, solid.type, solid.terrain_class, solid.height, {place.x(), place.y()}});
   }
   return things;
-}
-
-struct Bounds {
-  Eigen::AlignedBox2d box;
-  void add(const Eigen::Vector2d& place, double radius) {
-    box.extend(place - Eigen::Vector2d::Constant(radius));
-    box.extend(place + Eigen::Vector2d::Constant(radius));
-  }
-};
-
-/// What is worth looking at: path and things with their surroundings, as far as there is ground.
-view::PlanExtent extent_of(const sim::World& world, const std::vector<Position2>& path) {
-  Bounds bounds;
-  for (const Position2& place : path) bounds.add({place.x, place.y}, kLeastSurroundings);
-  for (std::size_t k = 1; k < world.solids.size(); ++k) {
-    const sim::WorldSolid& solid = world.solids[k];
-    bounds.add(solid.T_map_solid.translation().head<2>(),
-               kMargin + 0.5 * std::hypot(solid.length, solid.width));
-  }
-  const Eigen::Vector2d low = bounds.box.min().cwiseMax(world.min_corner);
-  const Eigen::Vector2d high = bounds.box.max().cwiseMin(world.max_corner);
-  return {low.x(), high.x(), low.y(), high.y()};
 }
 
 /// Centre of a pixel.
@@ -112,25 +88,17 @@ void tint_footprints(const std::vector<Thing>& things, view::SitePlan& plan) {
   }
 }
 
-std::vector<Position2> path_of(const sim::Motion& motion) {
-  std::vector<Position2> path;
-  for (double time = motion.start(); time < motion.end(); time += kPathInterval) {
-    const Eigen::Vector3d place = motion.at(time).translation();
-    path.push_back({place.x(), place.y()});
-  }
-  const Eigen::Vector3d place = motion.at(motion.end()).translation();
-  path.push_back({place.x(), place.y()});
-  return path;
-}
-
 }  // namespace
 
 void write_preview(const std::string& file, const Simulation& simulation) {
   const sim::World& world = simulation.world;
   view::SitePlan plan;
   plan.title = simulation.file.scene.name;
-  plan.path = path_of(simulation.motion);
-  plan.extent = extent_of(world, plan.path);
+  for (const Eigen::Vector2d& place : path_of(simulation.motion)) {
+    plan.path.push_back({place.x(), place.y()});
+  }
+  const Surroundings around = surroundings_of(simulation);
+  plan.extent = {around.low.x(), around.high.x(), around.low.y(), around.high.y()};
   plan.subtitle = view::fixed(plan.extent.x_max - plan.extent.x_min, 0) + " m x " +
                   view::fixed(plan.extent.y_max - plan.extent.y_min, 0) + " m, " +
                   std::to_string(world.solids.size() - 1) + " things;  " +

@@ -12,6 +12,7 @@
 #include "preview.h"
 #include "simulation.h"
 #include "stop_signal.h"
+#include "truth_output.h"
 
 using namespace mrpt_terrain;
 
@@ -19,6 +20,13 @@ namespace {
 
 std::string beside(const std::string& rawlog, const std::string& ending) {
   return std::filesystem::path(rawlog).replace_extension().string() + ending;
+}
+
+std::unique_ptr<TruthOutput> make_truth(const SimOptions& options, const Simulation& simulation) {
+  if (!options.truth) return nullptr;
+  auto truth = std::make_unique<TruthOutput>(beside(options.output, "_truth"), options.cell_size);
+  truth->add_scene(simulation);
+  return truth;
 }
 
 /// Writes one run; its files appear with `commit`.
@@ -29,6 +37,7 @@ class Recorder {
         simulation_(simulation),
         rawlog_(options.output),
         poses_(beside(options.output, ".tum")),
+        truth_(make_truth(options, simulation)),
         odometry_(simulation.params.odometry, options.seed,
                   simulation.motion.at(simulation.starts.front())),
         next_odometry_(simulation.starts.front()) {}
@@ -44,12 +53,14 @@ class Recorder {
     if (options_.deskewed) undo_motion(simulation_.sensor, simulation_.motion, sweep_);
     rawlog_.write(*make_observation(simulation_.form, simulation_.sensor, sweep_, options_.label));
     poses_.add(simulation_.motion, start, end);
+    if (truth_) truth_->add_sweep(simulation_, sweep_);
     points_ += sweep_.slot.size();
     if (k + 1 == simulation_.starts.size()) write_odometry(end);
   }
 
   /// The rawlog last, so that it is there only with what belongs to it.
   void commit() {
+    if (truth_) truth_->commit();
     poses_.commit();
     rawlog_.commit();
   }
@@ -74,6 +85,7 @@ class Recorder {
   const Simulation& simulation_;
   io::RawlogWriter rawlog_;
   PosesFile poses_;
+  std::unique_ptr<TruthOutput> truth_;  ///< null: not wanted
   Odometry odometry_;
   double next_odometry_;
   std::size_t readings_ = 0;
@@ -91,7 +103,8 @@ std::string summary_of(const SimOptions& options, const Simulation& simulation,
       view::fixed(simulation.starts.back() - simulation.starts.front() + simulation.sweep_time(),
                   1) +
       " s\n";
-  return text + "poses: " + recorder.poses_file() + "\n";
+  text += "poses: " + recorder.poses_file() + "\n";
+  return options.truth ? text + "truth: " + beside(options.output, "_truth") + "\n" : text;
 }
 
 int record_run(const SimOptions& options, const Simulation& simulation, Messages& messages) {
