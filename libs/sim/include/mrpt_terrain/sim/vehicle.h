@@ -44,9 +44,25 @@ struct DrivePath {
   double speed = 0.5;                      ///< metres per second
 };
 
-/// Drives along the path (corners rounded) with four wheels on the terrain: height, roll and pitch
-/// are those of the plane that fits best to the ground under the wheels. Throws SceneError
-/// "... leaves the terrain at (x, y)" where a wheel has no ground.
+/// Length on which a wheel touches the ground, metres: its foot is at the mean height of the
+/// terrain over that length along the heading. Steps are therefore climbed as ramps of that length;
+/// on planes the mean is exact.
+inline constexpr double kContactLength = 0.2;
+
+/// Drives along the path with four wheels on the terrain: height, roll and pitch are those of the
+/// plane of least squares through the feet of the wheels. Wheelbase and track are taken
+/// horizontally. Flanks of holes carry wheels as well.
+///
+/// Corners are arcs of 0.5 m radius, of less where an arc would take more than half of a leg.
+/// Corners sharper than 120 degrees are turned on the spot, at the waypoint. The speed is constant
+/// but for turns, where the heading changes by at most 1 rad/s. Equal waypoints in a row count
+/// once. Samples are at most 1 cm and 1 degree of heading apart.
+///
+/// A vehicle with one place to be (none: the origin) stands there with `DrivePath::yaw`, and the
+/// motion is one pose.
+/// \param source of the path, beginning of messages
+/// Throws SceneError "SOURCE: path: leaves the terrain at (x, y) ..." where a wheel has no ground,
+/// and where a waypoint is not finite or the speed not above 0.
 [[nodiscard]] Motion drive(const RayCaster& caster, const VehicleParams& vehicle,
                            const DrivePath& path, const std::string& source);
 
