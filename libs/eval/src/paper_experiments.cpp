@@ -29,15 +29,6 @@ const sim::WorldSolid& solid_with(const sim::World& world, int id, const std::st
   return *found;
 }
 
-const sensors::SensorModel& sensor_of(const sim::SceneFile& scene, const std::string& file,
-                                      const sensors::SensorModels& sensors) {
-  const sensors::SensorModel* model = sensors.find(scene.sensor);
-  if (model == nullptr) {
-    throw sim::SceneError(file + ": sensor = " + scene.sensor + ": must name a known sensor");
-  }
-  return *model;
-}
-
 /// Draws of one trial that are not the sensor's.
 struct TrialDraws {
   double azimuth = 0.0;  ///< of the first firing: a turn starts anywhere
@@ -179,7 +170,9 @@ Trial run_trial(const PaperScene& scene, const PlaneEstimators& estimators, cons
                 std::size_t number, Scratch& scratch) {
   const TrialDraws draws = draw(scene, plan, number);
   scan(scene, plan.conditions, draws, scratch);
-  describe(scratch.points.view(), plan.params, scratch.workspace, scratch.description);
+  DescriptionParams params = plan.params;
+  params.slope.seed = draws.estimator_seed;
+  describe(scratch.points.view(), params, scratch.workspace, scratch.description);
   Trial trial;
   for (const Target& target : scene.targets) {
     trial.push_back(
@@ -240,12 +233,13 @@ class TrialQueue {
 
 }  // namespace
 
-PaperScene load_paper_scene(const std::string& file, const sensors::SensorModels& sensors,
+PaperScene load_paper_scene(const std::string& file, const std::string& sensor_folder,
                             std::vector<Target> targets) {
   const sim::SceneFile loaded = sim::load_scene(file);
   PaperScene scene;
   scene.name = std::filesystem::path(file).stem().string();
-  scene.sensor = {sensor_of(loaded, file, sensors), loaded.vehicle.T_robot_sensor()};
+  scene.sensor = {sensors::resolve_sensor(loaded.sensor, sensor_folder, file + ": sensor"),
+                  loaded.vehicle.T_robot_sensor()};
   scene.world = std::make_unique<sim::World>(sim::build_world(loaded.scene));
   scene.caster = std::make_unique<sim::RayCaster>(*scene.world);
   scene.targets = std::move(targets);

@@ -95,6 +95,19 @@ Series height_indices(const std::vector<Trial>& trials, std::size_t target) {
   });
 }
 
+Series described_angles(const std::vector<Trial>& trials, std::size_t target) {
+  return series_of(trials, target, [](const Measurement& m) {
+    return degrees_if_ok(m.description.slope.status, m.description.slope.angle);
+  });
+}
+
+Series roughness_flags(const std::vector<Trial>& trials, std::size_t target) {
+  return series_of(trials, target, [](const Measurement& m) -> std::optional<double> {
+    if (m.description.roughness.status != FeatureStatus::kOk) return std::nullopt;
+    return m.description.roughness.rough ? 1.0 : 0.0;
+  });
+}
+
 Series estimated_angles(const std::vector<Trial>& trials, std::size_t target,
                         std::size_t estimator) {
   return series_of(trials, target, [estimator](const Measurement& m) {

@@ -40,10 +40,10 @@ struct PaperScene {
 };
 
 /// Reads a scene file and looks up the truth of its targets. Throws sim::SceneError for bad scenes,
-/// scenes without sensor, sensors that are not known and ids of solids that are not in the scene.
+/// ids of solids that are not in the scene, std::runtime_error for sensors that are not known.
+/// \param sensor_folder where the sensors are that scenes name
 /// \param targets name and ids; truths are filled in
-[[nodiscard]] PaperScene load_paper_scene(const std::string& file,
-                                          const sensors::SensorModels& sensors,
+[[nodiscard]] PaperScene load_paper_scene(const std::string& file, const std::string& sensor_folder,
                                           std::vector<Target> targets);
 
 /// Imperfections of sensor and robot. There are no others: no drop-outs, no quantisation.
@@ -75,7 +75,7 @@ using Trial = std::vector<Measurement>;
 
 /// What is done in all trials of a run.
 struct TrialPlan {
-  DescriptionParams params;  ///< of the description; its slope method is `paper`
+  DescriptionParams params;  ///< of the description; each trial has a slope seed of its own
   TrialConditions conditions;
   std::size_t trials = 50;
   std::uint64_t seed = 1;

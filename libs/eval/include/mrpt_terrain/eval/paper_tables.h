@@ -37,7 +37,13 @@ struct SeriesSummary {
 /// Height indices of a target, centimetres as in Table 2.
 [[nodiscard]] Series height_indices(const std::vector<Trial>& trials, std::size_t target);
 
-/// Angles of a target by a method, degrees.
+/// Angles of a target as the description has them (Table 3), degrees.
+[[nodiscard]] Series described_angles(const std::vector<Trial>& trials, std::size_t target);
+
+/// R_n of a target: 0 flat, 1 rough.
+[[nodiscard]] Series roughness_flags(const std::vector<Trial>& trials, std::size_t target);
+
+/// Angles of a target by an estimator, degrees.
 /// \param estimator index into the estimators of the trials
 [[nodiscard]] Series estimated_angles(const std::vector<Trial>& trials, std::size_t target,
                                       std::size_t estimator);
