@@ -13,7 +13,7 @@ set(headers_of_Eigen3::Eigen "Eigen/")
 set(headers_of_PkgConfig::cairo "cairo")
 set(headers_of_nlohmann_json::nlohmann_json "nlohmann/")
 set(headers_of_ZLIB::ZLIB "zlib\\.h$")
-set(headers_of_embree "embree3/")
+set(headers_of_embree "embree[34]/")
 set(headers_of_yaml-cpp "yaml-cpp/")
 set(headers_of_pcl_sample_consensus "pcl/")
 # Every library: C++ standard headers, which have neither folder nor extension, and the compiler's

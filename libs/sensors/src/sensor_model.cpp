@@ -1,23 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mrpt_terrain/sensors/sensor_model.h"
 
-#include <mrpt/containers/yaml.h>
-
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <locale>
-#include <sstream>
 #include <stdexcept>
-#include <string_view>
+
+#include "model_file.h"
+#include "mrpt_terrain/params/fields.h"
 
 namespace mrpt_terrain::sensors {
 namespace {
 
-using mrpt::containers::yaml;
 constexpr double kRadians = M_PI / 180.0;
 
 bool equal_ignoring_case(const std::string& a, const std::string& b) {
@@ -31,139 +26,86 @@ bool is_named(const SensorModel& model, const std::string& name) {
   return same(model.name) || std::any_of(model.aliases.begin(), model.aliases.end(), same);
 }
 
-/// A permitted range, both ends included.
-struct Range {
-  double min, max;
-};
-
-/// Number of lines that start with a key.
-std::size_t count_keys(const std::string& file) {
-  std::ifstream stream(file);
-  std::size_t count = 0;
-  for (std::string line; std::getline(stream, line);) {
-    if (!line.empty() && std::isalpha(static_cast<unsigned char>(line[0])) != 0 &&
-        line.find(':') != std::string::npos) {
-      ++count;
-    }
-  }
-  return count;
+std::vector<double> angles(const ModelFile& file, const std::string& key, double limit) {
+  std::vector<double> result = file.numbers(key, {-limit, limit});
+  for (double& angle : result) angle *= kRadians;
+  return result;
 }
 
-/// The YAML file of one model; every complaint names file and key.
-class ModelFile {
- public:
-  explicit ModelFile(std::string file) : file_(std::move(file)) {
-    try {
-      document_ = yaml::FromFile(file_);
-    } catch (const std::exception&) {
-      throw std::runtime_error(file_ + ": cannot be read as YAML");
-    }
-    if (!document_.isMap()) throw std::runtime_error(file_ + ": must be a map of keys to values");
-    // MRPT's reader keeps what stands before a syntax error and does not complain.
-    if (document_.asMap().size() < count_keys(file_)) {
-      throw std::runtime_error(file_ + ": is not valid YAML: only " +
-                               std::to_string(document_.asMap().size()) +
-                               " of its keys can be read");
-    }
-  }
-
-  void refuse_other_keys() const {
-    constexpr std::array<std::string_view, 7> kKeys{
-        "name", "aliases", "elevation_deg", "max_range", "rate_hz", "columns", "laser_interval_us"};
-    for (const auto& [key, value] : document_.asMap()) {
-      const auto name = std::string(key.internalAsStr());
-      if (std::find(kKeys.begin(), kKeys.end(), name) == kKeys.end()) fail(name, "unknown key");
-    }
-  }
-
-  [[nodiscard]] std::string text(const std::string& key) const {
-    return text_of(key, required(key));
-  }
-
-  [[nodiscard]] std::vector<std::string> texts(const std::string& key) const {
-    std::vector<std::string> result;
-    if (!document_.has(key)) return result;
-    for (const auto& item : items(key)) result.push_back(text_of(key, item));
-    return result;
-  }
-
-  [[nodiscard]] double number(const std::string& key, Range range) const {
-    return number_of(key, required(key), range);
-  }
-  [[nodiscard]] double number_or(const std::string& key, Range range, double otherwise) const {
-    return document_.has(key) ? number(key, range) : otherwise;
-  }
-
-  [[nodiscard]] std::vector<double> numbers(const std::string& key, Range range) const {
-    std::vector<double> result;
-    static_cast<void>(required(key));
-    for (const auto& item : items(key)) result.push_back(number_of(key, item, range));
-    return result;
-  }
-
-  [[noreturn]] void fail(const std::string& key, const std::string& what) const {
-    throw std::runtime_error(file_ + ": " + key + ": " + what);
-  }
-
- private:
-  [[nodiscard]] const yaml::node_t& required(const std::string& key) const {
-    if (!document_.has(key)) fail(key, "is missing");
-    return document_[key].node();
-  }
-
-  [[nodiscard]] const yaml::sequence_t& items(const std::string& key) const {
-    const auto& node = document_[key].node();
-    if (!node.isSequence()) fail(key, "must be a list");
-    return node.asSequence();
-  }
-
-  [[nodiscard]] std::string text_of(const std::string& key, const yaml::node_t& node) const {
-    std::string text = node.isScalar() ? node.as<std::string>() : std::string();
-    if (text.empty()) fail(key, "must be a text that is not empty");
-    return text;
-  }
-
-  [[nodiscard]] double number_of(const std::string& key, const yaml::node_t& node,
-                                 Range range) const {
-    const std::string text = text_of(key, node);
-    std::istringstream stream(text);
-    stream.imbue(std::locale::classic());
-    double value = 0.0;
-    if (!(stream >> value) || !stream.eof()) fail(key, "'" + text + "' is not a number");
-    if (!(value >= range.min && value <= range.max)) {
-      std::ostringstream message;
-      message.imbue(std::locale::classic());
-      message << "= " << text << ": must be within [" << range.min << ", " << range.max << "]";
-      fail(key, message.str());
-    }
-    return value;
-  }
-
-  std::string file_;
-  yaml document_;
-};
-
-SensorModel read_model(const std::string& path) {
-  const ModelFile file(path);
-  file.refuse_other_keys();
-  SensorModel model;
-  model.name = file.text("name");
-  model.aliases = file.texts("aliases");
-  model.elevation = file.numbers("elevation_deg", {-90.0, 90.0});
+void read_beams(const ModelFile& file, SensorModel& model) {
+  model.elevation = angles(file, "elevation_deg", 90.0);
   if (model.elevation.empty() || model.elevation.size() > kMaxSensorRows) {
     file.fail("elevation_deg", "must have 1 to " + std::to_string(kMaxSensorRows) + " numbers");
   }
-  for (double& angle : model.elevation) angle *= kRadians;
-  model.max_range = file.number("max_range", {0.1, 10000.0});
+  if (!file.has("azimuth_offset_deg")) return;
+  model.azimuth_offset = angles(file, "azimuth_offset_deg", 180.0);
+  if (model.azimuth_offset.size() != model.elevation.size()) {
+    file.fail("azimuth_offset_deg",
+              "must have a number per ring, " + std::to_string(model.elevation.size()));
+  }
+}
+
+void read_timing(const ModelFile& file, SensorModel& model) {
   model.rate = file.number_or("rate_hz", {0.01, 1000.0}, 0.0);
   const double columns = file.number_or("columns", {1.0, 100000.0}, 0.0);
   if (columns != std::floor(columns)) file.fail("columns", "must be a whole number");
   model.columns = static_cast<int>(columns);
   model.laser_interval = file.number_or("laser_interval_us", {0.0, 1e6}, 0.0) * 1e-6;
-  return model;
+  const double start = file.number_or("start_azimuth_deg", {-360.0, 360.0}, 180.0);
+  const double end = file.number_or("end_azimuth_deg", {-360.0, 360.0}, -180.0);
+  if (start == end || std::abs(end - start) > 360.0) {
+    file.fail("end_azimuth_deg",
+              "must be at most one turn from start_azimuth_deg, and not the same");
+  }
+  model.start_azimuth = start * kRadians;
+  model.end_azimuth = end * kRadians;
+}
+
+void read_noise(const ModelFile& file, const std::string& path, SensorModel& model) {
+  if (!file.has("noise")) return;
+  params::assign_all(file.section("noise"), {{"noise", "", params::fields_of(model.noise)}});
+  const int rays = model.noise.sub_rays;
+  if (rays != 1 && rays != 5) {
+    throw std::runtime_error(path + ": [noise] sub_rays = " + std::to_string(rays) +
+                             ": must be 1 or 5 (rays per beam)");
+  }
 }
 
 }  // namespace
+
+bool SensorModel::full_turn() const {
+  return std::abs(end_azimuth - start_azimuth) > 2.0 * M_PI - 1e-9;
+}
+
+double SensorModel::azimuth_step() const {
+  return (end_azimuth - start_azimuth) / (full_turn() ? columns : std::max(columns - 1, 1));
+}
+
+double SensorModel::column_interval() const {
+  return std::abs(azimuth_step()) / (2.0 * M_PI * rate);
+}
+
+double SensorModel::azimuth(std::size_t column, std::size_t ring) const {
+  const double offset = azimuth_offset.empty() ? 0.0 : azimuth_offset[ring];
+  return start_azimuth + azimuth_step() * static_cast<double>(column) +
+         turn_rate() * laser_interval * static_cast<double>(ring) + offset;
+}
+
+SensorModel load_sensor_model(const std::string& file) {
+  const ModelFile yaml(file);
+  yaml.refuse_other_keys({"name", "aliases", "elevation_deg", "max_range", "rate_hz", "columns",
+                          "laser_interval_us", "min_range", "start_azimuth_deg", "end_azimuth_deg",
+                          "azimuth_offset_deg", "noise"});
+  SensorModel model;
+  model.name = yaml.text("name");
+  model.aliases = yaml.texts("aliases");
+  read_beams(yaml, model);
+  model.max_range = yaml.number("max_range", {0.1, 10000.0});
+  model.min_range = yaml.number_or("min_range", {0.0, model.max_range}, 0.0);
+  read_timing(yaml, model);
+  read_noise(yaml, file, model);
+  return model;
+}
 
 SensorModels SensorModels::from_folder(const std::string& folder) {
   std::vector<std::string> files;
@@ -177,7 +119,7 @@ SensorModels SensorModels::from_folder(const std::string& folder) {
   std::sort(files.begin(), files.end());
   SensorModels models;
   for (const auto& file : files) {
-    SensorModel model = read_model(file);
+    SensorModel model = load_sensor_model(file);
     try {
       models.add(std::move(model));
     } catch (const std::runtime_error& taken) {
@@ -200,6 +142,21 @@ const SensorModel* SensorModels::find(const std::string& name) const {
   const auto model = std::find_if(models_.begin(), models_.end(),
                                   [&](const SensorModel& m) { return is_named(m, name); });
   return model == models_.end() ? nullptr : &*model;
+}
+
+SensorModel resolve_sensor(const std::string& name_or_path, const std::string& folder,
+                           const std::string& source) {
+  if (std::filesystem::path(name_or_path).extension() == ".yaml") {
+    if (std::filesystem::exists(name_or_path)) return load_sensor_model(name_or_path);
+    throw std::runtime_error(source + " = '" + name_or_path + "': there is no such file");
+  }
+  const SensorModels models = SensorModels::from_folder(folder);
+  const SensorModel* model = models.find(name_or_path);
+  if (model != nullptr) return *model;
+  std::string known;
+  for (const SensorModel& other : models.all()) known += ", " + other.name;
+  throw std::runtime_error(source + " = '" + name_or_path + "': must be a .yaml file or one of " +
+                           known.substr(2) + " (" + folder + ")");
 }
 
 }  // namespace mrpt_terrain::sensors

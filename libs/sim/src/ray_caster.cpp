@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/sim/ray_caster.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "triangle_set.h"
+
+namespace mrpt_terrain::sim {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+RayBlock block_of(const Rays& rays, std::size_t first, double max_range) {
+  RayBlock block;
+  block.size = std::min(kPacket, rays.size() - first);
+  for (std::size_t k = 0; k < block.size; ++k) {
+    block.ox[k] = rays.origin_x[first + k];
+    block.oy[k] = rays.origin_y[first + k];
+    block.oz[k] = rays.origin_z[first + k];
+    block.dx[k] = rays.direction_x[first + k];
+    block.dy[k] = rays.direction_y[first + k];
+    block.dz[k] = rays.direction_z[first + k];
+    block.max_range[k] = max_range;
+  }
+  return block;
+}
+
+}  // namespace
+
+void Rays::resize(std::size_t n) {
+  for (auto* field : {&origin_x, &origin_y, &origin_z, &direction_x, &direction_y, &direction_z}) {
+    field->resize(n);
+  }
+}
+
+void Hits::resize(std::size_t n) {
+  range.resize(n);
+  solid.resize(n);
+  kind.resize(n);
+  cos_incidence.resize(n);
+}
+
+struct RayCaster::Impl {
+  explicit Impl(const World& w)
+      : world(w),
+        all(w.mesh, TriangleSet::Part::kAll),
+        terrain(w.mesh, TriangleSet::Part::kTerrain) {}
+
+  /// The highest triangle of a set over each of up to kPacket places.
+  void look_down(const TriangleSet& set, const double* x, const double* y, std::size_t n,
+                 std::optional<TerrainPoint>* result) const;
+
+  const World& world;
+  TriangleSet all;
+  TriangleSet terrain;
+};
+
+RayCaster::RayCaster(const World& world) : impl_(std::make_unique<Impl>(world)) {}
+RayCaster::~RayCaster() = default;
+const World& RayCaster::world() const { return impl_->world; }
+
+void RayCaster::cast(const Rays& rays, double max_range, Hits& hits) const {
+  hits.resize(rays.size());
+  const Mesh& mesh = impl_->world.mesh;
+  BlockHits found;
+  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+    const RayBlock block = block_of(rays, first, max_range);
+    impl_->all.cast(block, found);
+    for (std::size_t k = 0; k < block.size; ++k) {
+      const std::uint32_t triangle = found.triangle[k];
+      const bool hit = triangle != kNoTriangle;
+      hits.range[first + k] = found.range[k];
+      hits.solid[first + k] = hit ? mesh.solid[triangle] : kNoSolid;
+      hits.kind[first + k] = hit ? mesh.kind[triangle] : SurfaceKind::kObject;
+      hits.cos_incidence[first + k] = static_cast<float>(found.cos_incidence[k]);
+    }
+  }
+}
+
+void RayCaster::Impl::look_down(const TriangleSet& set, const double* x, const double* y,
+                                std::size_t n, std::optional<TerrainPoint>* result) const {
+  // Places on the very edge move inwards by what single precision cannot tell.
+  const Eigen::Vector2d low = set.min_corner().head<2>(), high = set.max_corner().head<2>();
+  const double margin = 1e-6 * (high - low).norm();
+  const double top = set.max_corner().z() + 1.0;
+  const double reach = top - set.min_corner().z() + 1.0;
+  RayBlock block;
+  block.size = n;
+  for (std::size_t k = 0; k < n; ++k) {
+    const bool inside = x[k] >= low.x() && x[k] <= high.x() && y[k] >= low.y() && y[k] <= high.y();
+    block.ox[k] = inside ? std::clamp(x[k], low.x() + margin, high.x() - margin) : kInfinity;
+    block.oy[k] = inside ? std::clamp(y[k], low.y() + margin, high.y() - margin) : kInfinity;
+    block.oz[k] = top;
+    block.dx[k] = block.dy[k] = 0.0;
+    block.dz[k] = -1.0;
+    block.max_range[k] = reach;
+  }
+  BlockHits found;
+  set.cast(block, found);
+  for (std::size_t k = 0; k < n; ++k) {
+    result[k].reset();
+    if (found.triangle[k] == kNoTriangle) continue;
+    Eigen::Vector3d normal = set.normal(found.triangle[k]);
+    if (normal.z() < 0.0) normal = -normal;
+    const double shift = normal.x() * (x[k] - block.ox[k]) + normal.y() * (y[k] - block.oy[k]);
+    const double rise = normal.z() > 1e-3 ? -shift / normal.z() : 0.0;
+    result[k] =
+        TerrainPoint{top - found.range[k] + rise, normal, world.mesh.solid[found.triangle[k]]};
+  }
+}
+
+std::optional<TerrainPoint> RayCaster::terrain_at(double x, double y) const {
+  std::optional<TerrainPoint> result;
+  impl_->look_down(impl_->terrain, &x, &y, 1, &result);
+  return result;
+}
+
+std::optional<TerrainPoint> RayCaster::top_at(double x, double y) const {
+  std::optional<TerrainPoint> result;
+  impl_->look_down(impl_->all, &x, &y, 1, &result);
+  return result;
+}
+
+void RayCaster::terrain_under(const std::vector<double>& x, const std::vector<double>& y,
+                              std::vector<std::optional<TerrainPoint>>& result) const {
+  result.resize(x.size());
+  for (std::size_t first = 0; first < x.size(); first += kPacket) {
+    impl_->look_down(impl_->terrain, &x[first], &y[first], std::min(kPacket, x.size() - first),
+                     &result[first]);
+  }
+}
+
+void RayCaster::tops_under(const std::vector<double>& x, const std::vector<double>& y,
+                           std::vector<std::optional<TerrainPoint>>& result) const {
+  result.resize(x.size());
+  for (std::size_t first = 0; first < x.size(); first += kPacket) {
+    impl_->look_down(impl_->all, &x[first], &y[first], std::min(kPacket, x.size() - first),
+                     &result[first]);
+  }
+}
+
+}  // namespace mrpt_terrain::sim

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "embree_api.h"
+#include "mrpt_terrain/sim/mesh.h"
+
+namespace mrpt_terrain::sim {
+
+/// Up to kPacket rays in the frame of a mesh; directions are unit vectors.
+struct RayBlock {
+  std::size_t size = 0;
+  std::array<double, kPacket> ox, oy, oz, dx, dy, dz;
+  std::array<double, kPacket> max_range;
+};
+
+/// What the rays of a block met.
+struct BlockHits {
+  std::array<double, kPacket> range;            ///< infinite: nothing
+  std::array<std::uint32_t, kPacket> triangle;  ///< of the mesh, or kNoTriangle
+  std::array<double, kPacket> cos_incidence;
+};
+
+/// Some triangles of a mesh. Embree looks for the triangle in single precision about a centre;
+/// where the ray meets it is computed in double.
+class TriangleSet {
+ public:
+  enum class Part : std::uint8_t { kAll, kTerrain };
+  TriangleSet(const Mesh& mesh, Part part);
+
+  /// First hits of the rays; those whose numbers are not finite or whose direction is zero meet
+  /// nothing.
+  void cast(const RayBlock& rays, BlockHits& hits) const;
+
+  /// Unit normal of a triangle of the mesh that belongs to this set.
+  [[nodiscard]] Eigen::Vector3d normal(std::uint32_t triangle) const;
+  /// Extent of the vertices in use, metres; inverted if there are none.
+  [[nodiscard]] const Eigen::Vector3d& min_corner() const { return min_corner_; }
+  [[nodiscard]] const Eigen::Vector3d& max_corner() const { return max_corner_; }
+
+ private:
+  /// Unit normal and distance from the centre.
+  struct Plane {
+    double nx, ny, nz, offset;
+  };
+  void measure(const Mesh& mesh, const std::vector<std::uint32_t>& members);
+
+  Eigen::Vector3d min_corner_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d max_corner_ = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
+  std::vector<Plane> planes_;            ///< one per triangle of the mesh
+  std::vector<std::uint32_t> triangle_;  ///< of the mesh, per primitive of the scene
+  std::unique_ptr<EmbreeScene> scene_;
+};
+
+}  // namespace mrpt_terrain::sim
