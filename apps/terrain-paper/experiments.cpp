@@ -47,9 +47,8 @@ std::vector<Job> jobs_of(const Options& options) {
     for (const double tilt : {0.0, options.tilt_deg * kRadian}) {
       if (tilt > 0.0 && !with_tilt) continue;
       for (const double level : levels) {
-        jobs.push_back({&entry,
-                        {level * kMillimetre, tilt},
-                        tilt == 0.0 && level == figure_noise_mm(levels)});
+        jobs.push_back(
+            {&entry, {level * kMillimetre, tilt}, tilt == 0.0 && level == figure_noise_mm(levels)});
       }
       if (!with_tilt) break;
     }
@@ -126,12 +125,11 @@ class Collector {
     row.target = scene.targets[target].name;
     row.range_sigma = job.conditions.range_sigma;
     const bool heights = row.table == 2;
-    row.truth = heights ? 100.0 * scene.targets[target].height
-                        : scene.targets[target].slope / kRadian;
-    row.summary =
-        eval::summarize(heights ? eval::height_indices(trials, target)
-                                : eval::described_angles(trials, target),
-                        trials.size(), row.truth, bootstrap_);
+    row.truth =
+        heights ? 100.0 * scene.targets[target].height : scene.targets[target].slope / kRadian;
+    row.summary = eval::summarize(
+        heights ? eval::height_indices(trials, target) : eval::described_angles(trials, target),
+        trials.size(), row.truth, bootstrap_);
     row.split = split_trials(trials, target);
     results_.errors.push_back(std::move(row));
   }
@@ -144,8 +142,7 @@ class Collector {
       const eval::Target& target = scene.targets[k];
       cloud.targets.push_back(target.name);
       results_.series.push_back({target.name, 100.0 * target.height, target.slope / kRadian,
-                                 eval::height_indices(trials, k),
-                                 eval::roughness_flags(trials, k),
+                                 eval::height_indices(trials, k), eval::roughness_flags(trials, k),
                                  eval::described_angles(trials, k)});
     }
     results_.clouds.push_back(std::move(cloud));

@@ -14,8 +14,8 @@ struct Options {
   std::uint64_t seed = 1;
   std::string output_dir = "out";
   std::vector<int> tables = {2, 3, 4, 5};
-  std::vector<double> noise_mm;   ///< standard deviations of the ranges; empty: each table's own
-  double tilt_deg = 0.07;         ///< of roll and pitch in the rows with pose jitter; 0: no such rows
+  std::vector<double> noise_mm;  ///< standard deviations of the ranges; empty: each table's own
+  double tilt_deg = 0.07;  ///< of roll and pitch in the rows with pose jitter; 0: no such rows
   double inlier_distance = 0.01;  ///< T_q, metres
   std::size_t lmeds_trials = 0;   ///< 0: all
   int resamples = 2000;

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+
+#include "exit_code.h"
+#include "experiments.h"
+#include "figures.h"
+#include "gnuplot.h"
+#include "mrpt_terrain/files/atomic_file.h"
+#include "options.h"
+#include "paper_tables_text.h"
+#include "progress_bar.h"
+#include "report_files.h"
+#include "stop_signal.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void write(const fs::path& file, const std::string& content) {
+  mrpt_terrain::files::write_atomically(file.string(), std::string_view(content));
+}
+
+/// Pictures that were made, and what went wrong with the others.
+struct MadeFigures {
+  std::vector<Figure> figures;
+  std::vector<std::string> remarks;
+};
+
+MadeFigures make_figures(const Options& options, const Results& results, ProgressBar& bar) {
+  MadeFigures made;
+  const std::vector<Figure> wanted = paper_figures(results);
+  const fs::path folder = fs::path(options.output_dir) / "figures";
+  fs::create_directories(folder);
+  for (const Figure& figure : wanted) {
+    for (const Figure::Data& data : figure.data) write(folder / data.file, data.content);
+    write(folder / (figure.name + ".gp"), figure.script);
+  }
+  const std::string gnuplot = find_gnuplot();
+  if (gnuplot.empty()) {
+    made.remarks.emplace_back(
+        "No figures: gnuplot is not installed (Debian package gnuplot-nox). Scripts and data are "
+        "in figures/.");
+    return made;
+  }
+  for (std::size_t k = 0; k < wanted.size() && !stop_requested(); ++k) {
+    bar.show(static_cast<double>(k) / static_cast<double>(wanted.size()), wanted[k].name);
+    const std::string problem = run_gnuplot(gnuplot, folder, wanted[k].name);
+    if (problem.empty())
+      made.figures.push_back(wanted[k]);
+    else
+      made.remarks.push_back(problem);
+  }
+  bar.clear();
+  return made;
+}
+
+std::string text_of(const std::vector<TextTable>& tables) {
+  std::string text;
+  for (const TextTable& table : tables) text += as_text(table) + "\n";
+  return text;
+}
+
+int write_report(const Options& options, const Results& results,
+                 const std::vector<TextTable>& tables, std::vector<std::string> remarks,
+                 ProgressBar& bar) {
+  const fs::path folder = options.output_dir;
+  fs::create_directories(folder);
+  write(folder / "tables.txt", text_of(tables));
+  write(folder / "tables.csv", tables_csv(results));
+  write(folder / "estimates.csv", estimates_csv(results));
+  MadeFigures made;
+  if (!options.no_figures) made = make_figures(options, results, bar);
+  for (const std::string& remark : made.remarks) std::cerr << "warning: " << remark << "\n";
+  remarks.insert(remarks.end(), made.remarks.begin(), made.remarks.end());
+  write(folder / "report.html", report_html(options, results, tables, made.figures, remarks));
+  std::cout << "Written: " << (folder / "report.html").string() << ", tables.txt, tables.csv, "
+            << "estimates.csv, " << made.figures.size() << " figures\n";
+  if (stop_requested()) return kExitInterrupted;
+  return options.no_figures || made.remarks.empty() ? kExitOk : kExitIncomplete;
+}
+
+}  // namespace
+
+int run_paper(const Options& options) {
+  std::vector<std::string> remarks;
+  if (const std::string missing = missing_estimators_text(); !missing.empty()) {
+    std::cerr << "warning: " << missing << "\n";
+    remarks.push_back(missing);
+  }
+  if (options.lmeds_trials > 0 && options.lmeds_trials < options.trials) {
+    remarks.push_back("lmeds sees the first " + std::to_string(options.lmeds_trials) + " of " +
+                      std::to_string(options.trials) + " scans only; it is slow.");
+    std::cout << remarks.back() << "\n\n";
+  }
+  ProgressBar bar(!options.quiet);
+  Results results;
+  try {
+    results = run_experiments(options, [&bar](double share, const std::string& text) {
+      bar.show(share, text);
+      return !stop_requested();
+    });
+  } catch (const std::exception& error) {
+    bar.clear();
+    std::cerr << "error: " << error.what() << "\n";
+    return kExitInput;
+  }
+  bar.clear();
+  if (!results.complete) {
+    std::cerr << "interrupted: nothing was written\n";
+    return kExitInterrupted;
+  }
+  const std::vector<TextTable> tables = paper_tables(results);
+  std::cout << text_of(tables) << std::flush;
+  return write_report(options, results, tables, std::move(remarks), bar);
+}
