@@ -16,7 +16,8 @@ namespace {
 /// The device of the process; never released, because static objects may outlive it.
 RTCDevice device() {
   static const RTCDevice instance = [] {
-    const RTCDevice created = rtcNewDevice("threads=1,verbose=0");
+    // The oldest instruction set, so that all machines of an architecture find the same triangles.
+    const RTCDevice created = rtcNewDevice("threads=1,verbose=0,isa=sse2");
     if (created == nullptr) fail(nullptr, "no device");
     return created;
   }();

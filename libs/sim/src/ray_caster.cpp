@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "medium_caster.h"
+#include "mover_caster.h"
 #include "triangle_set.h"
 
 namespace mrpt_terrain::sim {
@@ -45,7 +47,9 @@ struct RayCaster::Impl {
   explicit Impl(const World& w)
       : world(w),
         all(w.mesh, TriangleSet::Part::kAll),
-        terrain(w.mesh, TriangleSet::Part::kTerrain) {}
+        terrain(w.mesh, TriangleSet::Part::kTerrain) {
+    for (const Mover& mover : w.movers) movers.emplace_back(mover);
+  }
 
   /// The highest triangle of a set over each of up to kPacket places.
   void look_down(const TriangleSet& set, const double* x, const double* y, std::size_t n,
@@ -54,6 +58,7 @@ struct RayCaster::Impl {
   const World& world;
   TriangleSet all;
   TriangleSet terrain;
+  std::vector<MoverCaster> movers;
 };
 
 RayCaster::RayCaster(const World& world) : impl_(std::make_unique<Impl>(world)) {}
@@ -75,6 +80,15 @@ void RayCaster::cast(const Rays& rays, double max_range, Hits& hits) const {
       hits.kind[first + k] = hit ? mesh.kind[triangle] : SurfaceKind::kObject;
       hits.cos_incidence[first + k] = static_cast<float>(found.cos_incidence[k]);
     }
+  }
+  for (const MoverCaster& mover : impl_->movers) mover.cast(rays, max_range, hits);
+}
+
+void RayCaster::scatter(const Rays& rays, double max_range, std::uint64_t seed,
+                        std::uint64_t first_number, Hits& hits) const {
+  const ScatteredRays scattered{rays, max_range, seed, first_number};
+  for (const Medium& medium : impl_->world.media) {
+    scatter_in(medium, impl_->terrain, scattered, hits);
   }
 }
 

@@ -101,11 +101,14 @@ void simulate_sweep(const RayCaster& caster, const MountedSensor& sensor, const 
   }
   const Turn turn{caster, model, BeamTable(model), ring_biases(model)};
   RandomGenerator random(seed, stream);
+  const std::uint64_t media_seed = seed ^ (stream * 0x9E3779B97F4A7C15ULL);
   start_sweep(model, start_time, sweep);
   for (std::size_t first = 0; first < sweep.columns; first += kTileColumns) {
     const Tile tile = make_tile(sensor, motion, start_time, first);
     fill_rays(turn.table, tile, !caster.world().movers.empty(), workspace.rays);
     caster.cast(workspace.rays, model.max_range, workspace.hits);
+    caster.scatter(workspace.rays, model.max_range, media_seed, first * turn.table.size(),
+                   workspace.hits);
     for (std::size_t k = 0; k < tile.size; ++k) {
       finish_column(turn, tile, k, random, workspace, sweep);
     }

@@ -9,13 +9,12 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-bool is_castable(const RayBlock& rays, std::size_t k) {
-  const double square = rays.dx[k] * rays.dx[k] + rays.dy[k] * rays.dy[k] + rays.dz[k] * rays.dz[k];
-  const double sum = rays.ox[k] + rays.oy[k] + rays.oz[k] + square;
-  return std::isfinite(sum) && square > 0.0 && rays.max_range[k] > 0.0;
-}
-
 }  // namespace
+
+bool is_castable(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+  const double square = direction.squaredNorm();
+  return square > 0.0 && std::isfinite(origin.sum() + square);
+}
 
 TriangleSet::TriangleSet(const Mesh& mesh, Part part) {
   for (std::uint32_t t = 0; t < mesh.size(); ++t) {
@@ -57,7 +56,9 @@ void TriangleSet::cast(const RayBlock& rays, BlockHits& hits) const {
   alignas(32) std::array<int, kPacket> valid{};
   RayPacket packet;
   for (std::size_t k = 0; k < kPacket; ++k) {
-    const bool castable = k < rays.size && is_castable(rays, k);
+    const bool castable =
+        k < rays.size && rays.max_range[k] > 0.0 &&
+        is_castable({rays.ox[k], rays.oy[k], rays.oz[k]}, {rays.dx[k], rays.dy[k], rays.dz[k]});
     valid[k] = castable ? -1 : 0;
     packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
     hits.range[k] = kInfinity;

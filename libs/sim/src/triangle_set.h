@@ -10,6 +10,7 @@
 
 #include "embree_api.h"
 #include "mrpt_terrain/sim/mesh.h"
+#include "mrpt_terrain/sim/ray_caster.h"
 
 namespace mrpt_terrain::sim {
 
@@ -26,6 +27,16 @@ struct BlockHits {
   std::array<std::uint32_t, kPacket> triangle;  ///< of the mesh, or kNoTriangle
   std::array<double, kPacket> cos_incidence;
 };
+
+/// Whether a ray can meet anything: finite numbers and a direction that is not zero.
+[[nodiscard]] bool is_castable(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
+
+[[nodiscard]] inline Eigen::Vector3d origin_of(const Rays& rays, std::size_t ray) {
+  return {rays.origin_x[ray], rays.origin_y[ray], rays.origin_z[ray]};
+}
+[[nodiscard]] inline Eigen::Vector3d direction_of(const Rays& rays, std::size_t ray) {
+  return {rays.direction_x[ray], rays.direction_y[ray], rays.direction_z[ray]};
+}
 
 /// Some triangles of a mesh. Embree looks for the triangle in single precision about a centre;
 /// where the ray meets it is computed in double.

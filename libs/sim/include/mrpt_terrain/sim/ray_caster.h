@@ -47,8 +47,15 @@ class RayCaster {
   RayCaster(const RayCaster&) = delete;
   RayCaster& operator=(const RayCaster&) = delete;
 
-  /// First hits of all rays up to `max_range`, media left out.
+  /// First hits of all rays up to `max_range`, media left out. Rays with a number that is not
+  /// finite or a direction of zero meet nothing.
   void cast(const Rays& rays, double max_range, Hits& hits) const;
+
+  /// Lets rays return from within media: where the random free path of a ray in a medium ends
+  /// before its hit, the hit moves there. Layers follow the terrain under them.
+  /// \param seed of the free paths; ray k has the random numbers of `first_number` + k
+  void scatter(const Rays& rays, double max_range, std::uint64_t seed, std::uint64_t first_number,
+               Hits& hits) const;
 
   /// The terrain at (x, y): the highest surface that a wheel can rest on, or the flank of a pothole
   /// or ditch where there is no such surface. Nothing outside the ground's extent.
