@@ -5,6 +5,7 @@
 #include "exit_code.h"
 #include "options.h"
 #include "stop_signal.h"
+#include "verbosity_option.h"
 
 namespace {
 
@@ -50,7 +51,7 @@ void add_options(CLI::App& app, Options& options) {
   app.add_flag("--refine", options.refine,
                "PCL's estimators refine their plane; as published they do not");
   app.add_flag("--no-figures", options.no_figures, "Tables only");
-  app.add_flag("-q,--quiet", options.quiet, "No progress bar");
+  add_verbosity(app, options.verbosity);
 }
 
 std::string joined(int argc, char** argv) {

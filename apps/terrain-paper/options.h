@@ -3,9 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <set>
 #include <string>
 #include <vector>
+
+#include "messages.h"
 
 /// What the command line asked for.
 struct Options {
@@ -21,7 +22,7 @@ struct Options {
   int resamples = 2000;
   bool refine = false;  ///< PCL's estimators refine their plane
   bool no_figures = false;
-  bool quiet = false;
+  Verbosity verbosity = Verbosity::kInfo;
   std::string command;  ///< as typed, for the report
 };
 

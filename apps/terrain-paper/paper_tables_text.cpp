@@ -22,17 +22,9 @@ const std::array<const char*, 9> kPublishedMethods = {"ransac",  "lmeds",       
                                                       "rransac", "mlesac",        "prosac",
                                                       "pca",     "least_squares", "paper_method"};
 
-std::string number(const std::optional<double>& value, int decimals) {
-  return value ? fixed(*value, decimals) : kNone;
-}
-
 std::string with_sign(double value, int decimals) {
   const std::string text = fixed(value, decimals);
   return text.find_first_not_of("-0.") == std::string::npos || text[0] == '-' ? text : "+" + text;
-}
-
-std::string difference(double ours, const std::optional<double>& published, int decimals) {
-  return published ? with_sign(ours - *published, decimals) : kNone;
 }
 
 std::string interval(const eval::Interval& interval, int decimals) {
@@ -155,28 +147,33 @@ std::vector<std::string> verdicts(const eval::Duel& duel) {
   return cells;
 }
 
+/// A published number beside ours: three cells.
+void add_comparison(const double* published, const double* ours, int decimals,
+                    std::vector<std::string>& cells) {
+  cells.push_back(published != nullptr ? fixed(*published, decimals) : kNone);
+  cells.push_back(ours != nullptr ? fixed(*ours, decimals) : kNone);
+  const bool both = published != nullptr && ours != nullptr;
+  cells.push_back(both ? with_sign(*ours - *published, decimals) : kNone);
+}
+
 std::vector<std::string> slope_row(const eval::SlopeResult& result, const std::string& method,
                                    std::size_t columns) {
   const auto published = eval::published_slope(result.slope, method);
-  const std::optional<double> mean =
-      published ? std::optional<double>(published->mean) : std::nullopt;
-  const std::optional<double> variance = published ? published->variance : std::nullopt;
-  std::vector<std::string> cells{method, number(mean, 3)};
   const eval::MethodRow* row = row_of(result, method);
-  if (row == nullptr || row->summary.statistics.n == 0) {
-    cells.insert(cells.end(), {kNone, kNone, number(variance, 4)});
+  const bool ran = row != nullptr && row->summary.statistics.n > 0;
+  const eval::ErrorStatistics* ours = ran ? &row->summary.statistics : nullptr;
+  std::vector<std::string> cells{method};
+  add_comparison(published ? &published->mean : nullptr, ran ? &ours->mean : nullptr, 3, cells);
+  const bool legible = published && published->variance;
+  add_comparison(legible ? &*published->variance : nullptr, ran ? &ours->variance : nullptr, 4,
+                 cells);
+  if (!ran) {
     cells.resize(columns, kNone);
     return cells;
   }
-  const eval::ErrorStatistics& ours = row->summary.statistics;
-  cells.push_back(fixed(ours.mean, 3));
-  cells.push_back(difference(ours.mean, mean, 3));
-  cells.push_back(number(variance, 4));
-  cells.push_back(fixed(ours.variance, 4));
-  cells.push_back(difference(ours.variance, variance, 4));
-  cells.push_back(with_sign(ours.mean_error, 3));
-  cells.push_back(fixed(ours.rms_error, 3));
-  cells.push_back(std::to_string(ours.n));
+  cells.push_back(with_sign(ours->mean_error, 3));
+  cells.push_back(fixed(ours->rms_error, 3));
+  cells.push_back(std::to_string(ours->n));
   for (const eval::Duel& duel : row->duels) {
     for (std::string& cell : verdicts(duel)) cells.push_back(std::move(cell));
   }

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdio>
 #include <filesystem>
-#include <iostream>
 
 #include "exit_code.h"
 #include "experiments.h"
 #include "figures.h"
 #include "gnuplot.h"
+#include "messages.h"
 #include "mrpt_terrain/files/atomic_file.h"
 #include "options.h"
 #include "paper_tables_text.h"
-#include "progress_bar.h"
 #include "report_files.h"
 #include "stop_signal.h"
 
@@ -62,56 +60,67 @@ std::string text_of(const std::vector<TextTable>& tables) {
   return text;
 }
 
-int write_report(const Options& options, const Results& results,
-                 const std::vector<TextTable>& tables, std::vector<std::string> remarks,
-                 ProgressBar& bar) {
+void write_report(const Options& options, const Results& results,
+                  const std::vector<TextTable>& tables, const MadeFigures& made,
+                  const std::vector<std::string>& remarks) {
   const fs::path folder = options.output_dir;
-  fs::create_directories(folder);
   write(folder / "tables.txt", text_of(tables));
   write(folder / "tables.csv", tables_csv(results));
   write(folder / "estimates.csv", estimates_csv(results));
-  MadeFigures made;
-  if (!options.no_figures) made = make_figures(options, results, bar);
-  for (const std::string& remark : made.remarks) std::cerr << "warning: " << remark << "\n";
-  remarks.insert(remarks.end(), made.remarks.begin(), made.remarks.end());
   write(folder / "report.html", report_html(options, results, tables, made.figures, remarks));
-  std::cout << "Written: " << (folder / "report.html").string() << ", tables.txt, tables.csv, "
-            << "estimates.csv, " << made.figures.size() << " figures\n";
+}
+
+// What the user should know before the numbers.
+std::vector<std::string> remarks_of(const Options& options) {
+  std::vector<std::string> remarks;
+  if (std::string missing = missing_estimators_text(); !missing.empty()) {
+    remarks.push_back(std::move(missing));
+  }
+  if (options.lmeds_trials > 0 && options.lmeds_trials < options.trials) {
+    remarks.push_back("lmeds sees the first " + std::to_string(options.lmeds_trials) + " of " +
+                      std::to_string(options.trials) + " scans only, because it is slow.");
+  }
+  return remarks;
+}
+
+// Files of an earlier run are replaced one by one, each as a whole.
+int report(const Options& options, const Results& results, std::vector<std::string> remarks,
+           Messages& messages) {
+  const std::vector<TextTable> tables = paper_tables(results);
+  messages.info(text_of(tables));
+  fs::create_directories(options.output_dir);
+  MadeFigures made;
+  if (!options.no_figures) made = make_figures(options, results, messages.bar());
+  for (const std::string& remark : made.remarks) messages.warn(remark);
   if (stop_requested()) return kExitInterrupted;
-  return options.no_figures || made.remarks.empty() ? kExitOk : kExitIncomplete;
+  remarks.insert(remarks.end(), made.remarks.begin(), made.remarks.end());
+  write_report(options, results, tables, made, remarks);
+  messages.info("Written to " + options.output_dir + ": report.html, tables.txt, tables.csv, " +
+                "estimates.csv, " + std::to_string(made.figures.size()) + " figures; " +
+                duration_text(results.seconds) + " of scans\n");
+  return made.remarks.empty() ? kExitOk : kExitIncomplete;
 }
 
 }  // namespace
 
 int run_paper(const Options& options) {
-  std::vector<std::string> remarks;
-  if (const std::string missing = missing_estimators_text(); !missing.empty()) {
-    std::cerr << "warning: " << missing << "\n";
-    remarks.push_back(missing);
-  }
-  if (options.lmeds_trials > 0 && options.lmeds_trials < options.trials) {
-    remarks.push_back("lmeds sees the first " + std::to_string(options.lmeds_trials) + " of " +
-                      std::to_string(options.trials) + " scans only; it is slow.");
-    std::cout << remarks.back() << "\n\n";
-  }
-  ProgressBar bar(!options.quiet);
+  Messages messages(options.verbosity);
+  std::vector<std::string> remarks = remarks_of(options);
+  for (const std::string& remark : remarks) messages.warn(remark);
   Results results;
   try {
-    results = run_experiments(options, [&bar](double share, const std::string& text) {
-      bar.show(share, text);
+    results = run_experiments(options, [&messages](double share, const std::string& text) {
+      messages.bar().show(share, text);
       return !stop_requested();
     });
   } catch (const std::exception& error) {
-    bar.clear();
-    std::cerr << "error: " << error.what() << "\n";
+    messages.error(error.what());
     return kExitInput;
   }
-  bar.clear();
+  messages.bar().clear();
   if (!results.complete) {
-    std::cerr << "interrupted: nothing was written\n";
+    messages.warn("interrupted: nothing was written");
     return kExitInterrupted;
   }
-  const std::vector<TextTable> tables = paper_tables(results);
-  std::cout << text_of(tables) << std::flush;
-  return write_report(options, results, tables, std::move(remarks), bar);
+  return report(options, results, std::move(remarks), messages);
 }
