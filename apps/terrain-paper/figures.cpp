@@ -23,6 +23,10 @@ constexpr const char* kBlue = "#1f77b4";
 
 std::string quoted(const std::string& text) { return "\"" + text + "\""; }
 
+// The second pass begins as the first did.
+constexpr const char* kReset =
+    "set key on\nset size noratio\nset xrange [*:*]\nset yrange [*:*]\nset ytics auto\n";
+
 // The two terminals one after the other; `body` draws one multiplot. Names of the output files can
 // be given from outside (gnuplot -e).
 std::string script_of(const std::string& name, int width, int height, const std::string& body) {
@@ -36,7 +40,7 @@ std::string script_of(const std::string& name, int width, int height, const std:
          name +
          ".png\"\n"
          "set encoding utf8\n"
-         "set tics nomirror\nset border 3\nset grid lc rgb \"#dddddd\"\n"
+         "set tics nomirror\nset border 3\nset grid lt 1 lc rgb \"#e0e0e0\"\n"
          "do for [pass = 1:2] {\n"
          "if (pass == 1) {\n"
          "  set terminal svg size " +
@@ -64,11 +68,12 @@ struct Window {
 struct Layer {
   std::string title;
   const char* colour;
-  int target;  ///< as in ScanPicture
+  int number;  ///< as in ScanPicture
 };
+using PointColour = std::vector<int> eval::ScanPicture::*;
 
 // Points of the layers, one gnuplot index each; a layer without points keeps its index.
-Figure::Data cloud_data(const std::string& file, const SceneCloud& cloud,
+Figure::Data cloud_data(const std::string& file, const SceneCloud& cloud, PointColour colour,
                         const std::vector<Layer>& layers) {
   std::string text = "# x y z of one scan, metres, robot frame; one block per colour\n";
   const eval::ScanPicture& picture = cloud.picture;
@@ -76,7 +81,7 @@ Figure::Data cloud_data(const std::string& file, const SceneCloud& cloud,
     text += "# " + layer.title + "\n";
     std::size_t count = 0;
     for (std::size_t i = 0; i < picture.points.size(); ++i) {
-      if (picture.target[i] != layer.target) continue;
+      if ((picture.*colour)[i] != layer.number) continue;
       ++count;
       text += fixed(picture.points.x[i], 4) + " " + fixed(picture.points.y[i], 4) + " " +
               fixed(picture.points.z[i], 4) + "\n";
@@ -93,7 +98,7 @@ Window window_of(const SceneCloud& cloud, double margin) {
   Window window{kFar, -kFar, kFar, -kFar};
   const eval::ScanPicture& picture = cloud.picture;
   for (std::size_t i = 0; i < picture.points.size(); ++i) {
-    if (picture.target[i] < 0) continue;
+    if (picture.source[i] < 0) continue;
     window.x0 = std::min(window.x0, picture.points.x[i] - margin);
     window.x1 = std::max(window.x1, picture.points.x[i] + margin);
     window.y0 = std::min(window.y0, picture.points.y[i] - margin);
@@ -118,17 +123,25 @@ std::string layers_plot(const std::string& file, const std::string& columns,
   return plot + "\n";
 }
 
-// Left: seen from above, y to the left as the robot sees it. Right: seen along x.
+// A multiplot with room for one key below all panels.
+std::string panels(int rows, int columns, double bottom) {
+  return "set multiplot layout " + std::to_string(rows) + "," + std::to_string(columns) +
+         " margins 0.08,0.98," + fixed(bottom, 3) + ",0.94 spacing 0.09," +
+         fixed(rows > 1 ? 0.07 : 0.0, 2) + "\nset key at screen 0.5," + fixed(0.1 * bottom, 4) +
+         " center bottom horizontal\n";
+}
+
+// Left: seen from above, y to the left as the robot sees it. Right: seen along x. Only the first
+// plot of a figure draws the key.
 std::string views(const std::string& file, const std::string& what, const Window& window,
                   const std::vector<Layer>& layers) {
   const std::string leftwards = range(window.y1, window.y0);
-  return "set key bottom center outside horizontal\n"
-         "set size ratio -1\nset title " +
-         quoted(what + ", top view") + "\nset xlabel \"y, m\"\nset ylabel \"x, m\"\nset xrange " +
-         leftwards + "\nset yrange " + range(window.x0, window.x1) + "\n" +
-         layers_plot(file, "2:1", layers) + "set size noratio\nset title " +
-         quoted(what + ", front view") + "\nset xlabel \"y, m\"\nset ylabel \"z, m\"\nset xrange " +
-         leftwards + "\nset yrange [*:*]\n" + layers_plot(file, "2:3", layers);
+  return "set size ratio -1\nset title " + quoted(what + ", top view") +
+         "\nset xlabel \"y, m\"\nset ylabel \"x, m\"\nset xrange " + leftwards + "\nset yrange " +
+         range(window.x0, window.x1) + "\n" + layers_plot(file, "2:1", layers) +
+         "set key off\nset size noratio\nset title " + quoted(what + ", front view") +
+         "\nset xlabel \"y, m\"\nset ylabel \"z, m\"\nset xrange " + leftwards +
+         "\nset yrange [*:*]\n" + layers_plot(file, "2:3", layers);
 }
 
 const SceneCloud* cloud_of(const Results& results, const std::string& target) {
@@ -146,17 +159,18 @@ std::string at_noise(const Results& results) {
 // Figures 6 and 8: one scene in two views.
 Figure scene_figure(const std::string& name, const std::string& caption, const SceneCloud& cloud,
                     const std::string& what, const std::vector<Layer>& layers) {
-  Figure figure{name, caption, {}, {cloud_data(name + ".dat", cloud, layers)}};
+  Figure figure{
+      name, caption, {}, {cloud_data(name + ".dat", cloud, &eval::ScanPicture::source, layers)}};
   figure.script = script_of(
       name, 1100, 520,
-      "set multiplot layout 1,2\n" + views(name + ".dat", what, window_of(cloud, 0.35), layers));
+      panels(1, 2, 0.18) + views(name + ".dat", what, window_of(cloud, 0.35), layers) + kReset);
   return figure;
 }
 
 // Figures 11 and 13: three slopes in two views each.
 std::optional<Figure> slopes_figure(const Results& results, const std::string& name,
                                     const std::vector<std::string>& slopes) {
-  std::string body = "set multiplot layout " + std::to_string(slopes.size()) + ",2\n";
+  std::string body = panels(static_cast<int>(slopes.size()), 2, 0.075);
   Figure figure{name,
                 "Point clouds of the slopes, top and front view (" + at_noise(results) +
                     "). Blue: the cluster whose angle is estimated; grey: ground; orange: other "
@@ -170,10 +184,10 @@ std::optional<Figure> slopes_figure(const Results& results, const std::string& n
     const SceneCloud* cloud = cloud_of(results, slope);
     if (cloud == nullptr) return std::nullopt;
     const std::string file = name + "_" + slope + ".dat";
-    figure.data.push_back(cloud_data(file, *cloud, layers));
+    figure.data.push_back(cloud_data(file, *cloud, &eval::ScanPicture::cluster, layers));
     body += views(file, "slope " + slope, window_of(*cloud, 0.35), layers);
   }
-  figure.script = script_of(name, 1000, 480 * static_cast<int>(slopes.size()), body);
+  figure.script = script_of(name, 1000, 430 * static_cast<int>(slopes.size()), body + kReset);
   return figure;
 }
 
@@ -196,8 +210,10 @@ Figure::Data series_data(const std::string& file, const std::string& header,
   return {file, text};
 }
 
-std::string truth_plot(double truth) {
-  return fixed(truth, 4) + " with lines lw 2 lc rgb " + quoted(kBlue) + " title \"truth\"";
+// Without a truth only the key shows the line.
+std::string truth_plot(const std::optional<double>& truth) {
+  return (truth ? fixed(*truth, 4) : "NaN") + " with lines lw 2 lc rgb " + quoted(kBlue) +
+         " title \"truth\"";
 }
 
 const TargetSeries* series_of(const Results& results, const std::string& target) {
@@ -216,22 +232,23 @@ struct Panel {
 };
 
 Figure panels_figure(const std::string& name, const std::string& caption,
-                     const std::vector<Panel>& panels) {
+                     const std::vector<Panel>& items) {
   Figure figure{name, caption, {}, {}};
   std::vector<const eval::Series*> columns;
   std::string header;
-  std::string body = "set multiplot layout 1," + std::to_string(panels.size()) +
-                     "\nset key bottom center outside horizontal\nset xlabel \"measurement\"\n";
-  for (std::size_t k = 0; k < panels.size(); ++k) {
-    columns.push_back(panels[k].series);
-    header += (k == 0 ? "" : " ") + quoted(panels[k].title);
-    body += "set title " + quoted(panels[k].title) + "\nset ylabel " + quoted(panels[k].axis) +
+  std::string body =
+      panels(1, static_cast<int>(items.size()), 0.24) + "set xlabel \"measurement\"\n";
+  for (std::size_t k = 0; k < items.size(); ++k) {
+    if (k == 1) body += "set key off\n";
+    columns.push_back(items[k].series);
+    header += (k == 0 ? "" : " ") + quoted(items[k].title);
+    body += "set title " + quoted(items[k].title) + "\nset ylabel " + quoted(items[k].axis) +
             "\nplot " + quoted(name + ".dat") + " using 1:" + std::to_string(k + 2) +
-            " with linespoints pt 7 ps 0.5 lc rgb " + quoted(kRed) + " title \"measured\"";
-    body += panels[k].truth ? ", " + truth_plot(*panels[k].truth) + "\n" : "\n";
+            " with linespoints pt 7 ps 0.5 lc rgb " + quoted(kRed) + " title \"measured\", " +
+            truth_plot(items[k].truth) + "\n";
   }
   figure.data.push_back(series_data(name + ".dat", header, columns));
-  figure.script = script_of(name, 430 * static_cast<int>(panels.size()), 400, body);
+  figure.script = script_of(name, 430 * static_cast<int>(items.size()), 400, body + kReset);
   return figure;
 }
 
@@ -272,13 +289,13 @@ Figure features_figure(const Results& results, const std::vector<const TargetSer
   figure.data.push_back(series_data(name + ".dat", header, columns));
   figure.script = script_of(
       name, 1100, 460,
-      "set multiplot layout 1,2\nset xlabel \"measurement\"\n"
-      "set key bottom center outside horizontal\n"
-      "set title \"(a) height index\"\nset ylabel \"H_f, cm\"\nset yrange [0:*]\n" +
+      panels(1, 2, 0.24) +
+          "set xlabel \"measurement\"\n"
+          "set title \"(a) height index\"\nset ylabel \"H_f, cm\"\nset yrange [0:*]\n" +
           heights +
           "\nset title \"(b) roughness\"\nset ylabel \"R_n\"\nset key off\nset yrange [0.7:" +
           fixed(static_cast<double>(clusters.size()) + 0.9, 1) + "]\nset ytics (" + tics + ")\n" +
-          roughness + "\nset ytics auto\nset key on\n");
+          roughness + "\n" + kReset);
   return figure;
 }
 
@@ -327,7 +344,7 @@ std::optional<Figure> estimates_figure(const Results& results, const std::string
     body += panel == 0 ? "set key at screen 0.78,0.96 left top vertical\n" : "set key off\n";
     body += "set title \"slope " + slopes[panel] + "\"\n" + plot + truth_plot(result->truth) + "\n";
   }
-  body += "set key on\n";
+  body += kReset;
   figure.script = script_of(name, 1000, 330 * static_cast<int>(slopes.size()), body);
   return figure;
 }

@@ -35,11 +35,12 @@ std::string millimetres(double metres) { return fixed(1e3 * metres, 0); }
 
 bool with_intervals(const Results& results) { return results.trials > kPublishedTrials; }
 
-// "2 of 50 scans: ..." for those numbers that are not zero.
-std::string remark(std::size_t count, std::size_t trials, const std::string& what) {
-  if (count == 0) return {};
-  return " " + std::to_string(count) + " of " + std::to_string(trials) + " scans: " + what + ".";
+std::string of_scans(std::size_t count, const Results& results) {
+  return std::to_string(count) + " of " + std::to_string(results.trials) + " scans";
 }
+
+constexpr const char* kSplitRule =
+    " several clusters; the one with most of its returns is measured.";
 
 /// A statistic of Tables 2 and 3: its name and where it is in theirs and ours.
 struct ErrorColumn {
@@ -81,6 +82,20 @@ std::vector<std::string> error_row(const ErrorRow& row, const eval::PublishedErr
   return cells;
 }
 
+std::string error_note(const Results& results, const std::vector<const ErrorRow*>& rows) {
+  std::string missing;
+  std::string split;
+  for (const ErrorRow* row : rows) {
+    const std::string at = " at " + millimetres(row->range_sigma) + " mm,";
+    if (row->summary.missing > 0) missing += " " + of_scans(row->summary.missing, results) + at;
+    if (row->split > 0) split += " " + of_scans(row->split, results) + at;
+  }
+  std::string note = "diff: magnitude of ours minus magnitude of the published value.";
+  if (!missing.empty()) note += " Not found in" + missing.substr(0, missing.size() - 1) + ".";
+  if (!split.empty()) note += " In" + split + " it" + kSplitRule;
+  return note;
+}
+
 TextTable error_table(const Results& results, const std::vector<const ErrorRow*>& rows) {
   const ErrorRow& first = *rows.front();
   const std::string unit = first.table == 2 ? "cm" : "deg";
@@ -100,13 +115,8 @@ TextTable error_table(const Results& results, const std::vector<const ErrorRow*>
   table.rows.push_back(published_row(published, table.header.size()));
   for (const ErrorRow* row : rows) {
     table.rows.push_back(error_row(*row, published, intervals));
-    table.note += remark(row->summary.missing, results.trials,
-                         "not found at " + millimetres(row->range_sigma) + " mm");
-    table.note += remark(row->split, results.trials,
-                         "in several clusters at " + millimetres(row->range_sigma) +
-                             " mm, the one with most of its returns is measured");
   }
-  table.note = "diff: magnitude of ours minus magnitude of the published value." + table.note;
+  table.note = error_note(results, rows);
   return table;
 }
 
@@ -194,10 +204,12 @@ std::string slope_note(const SlopeBlock& block, const Results& results) {
   const eval::SlopeResult& result = block.result;
   std::string note;
   for (const eval::MethodRow& row : result.rows) {
-    note += remark(row.summary.missing, results.trials, "no answer of " + row.method);
+    if (row.summary.missing == 0) continue;
+    note += " " + row.method + " has no answer in " + of_scans(row.summary.missing, results) + ".";
   }
-  note += remark(block.split, results.trials,
-                 "slope in several clusters, the one with most of its returns is measured");
+  if (block.split > 0) {
+    note += " In " + of_scans(block.split, results) + " the slope" + kSplitRule;
+  }
   note += coverage_text(eval::kBeam, result.beam_coverage);
   note += coverage_text(eval::kBeamToGround, result.beam_to_ground_coverage);
   return note.empty() ? note : note.substr(1);

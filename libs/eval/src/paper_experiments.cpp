@@ -47,10 +47,11 @@ std::uint64_t next64(RandomGenerator& random) {
   return high << 32U | random.next();
 }
 
-// Of one seed, every scene draws its own numbers; different conditions share them.
-std::uint64_t seed_of(const std::string& scene, std::uint64_t seed) {
+// Of one seed, every scene and every estimator draws its own numbers; different conditions share
+// them.
+std::uint64_t seed_of(const std::string& name, std::uint64_t seed) {
   std::uint64_t hash = 14695981039346656037ULL ^ seed;  // FNV-1a
-  for (const char letter : scene) {
+  for (const char letter : name) {
     hash = (hash ^ static_cast<unsigned char>(letter)) * 1099511628211ULL;
   }
   return hash;
@@ -159,7 +160,8 @@ Measurement measure(const Target& target, const PaperScene& scene,
     PlaneEstimate plane;
     plane.status = FeatureStatus::kNotNeeded;
     if (is_asked(*estimator, plan, trial)) {
-      plane = estimator->estimate(scratch.points.view(), members, plan.threshold, estimator_seed);
+      plane = estimator->estimate(scratch.points.view(), members, plan.threshold,
+                                  seed_of(estimator->name(), estimator_seed));
     }
     result.planes.push_back(plane);
   }
@@ -231,6 +233,13 @@ class TrialQueue {
   int finished_ = 0;
 };
 
+int source_of(const PaperScene& scene, std::int32_t solid) {
+  for (std::size_t k = 0; k < scene.targets.size(); ++k) {
+    if (belongs_to(scene.targets[k], *scene.world, solid)) return static_cast<int>(k);
+  }
+  return solid == sim::kGroundSolid ? ScanPicture::kGround : ScanPicture::kOther;
+}
+
 }  // namespace
 
 PaperScene load_paper_scene(const std::string& file, const std::string& sensor_folder,
@@ -283,10 +292,11 @@ ScanPicture scan_picture(const PaperScene& scene, const TrialPlan& plan) {
   for (std::size_t i = 0; i < scratch.points.size(); ++i) {
     if (labels.support[i] == Support::kUnknown) continue;
     picture.points.push_back(scratch.points.x[i], scratch.points.y[i], scratch.points.z[i]);
+    picture.source.push_back(source_of(scene, scratch.sweep.solid[scratch.sweep.slot[i]]));
     const auto target = target_of.find(labels.cluster[i]);
     const int other =
         labels.support[i] == Support::kGround ? ScanPicture::kGround : ScanPicture::kOther;
-    picture.target.push_back(target == target_of.end() ? other : target->second);
+    picture.cluster.push_back(target == target_of.end() ? other : target->second);
   }
   return picture;
 }

@@ -96,13 +96,16 @@ using TrialProgress = std::function<bool(std::size_t done)>;
                                             const PlaneEstimators& estimators,
                                             const TrialPlan& plan, const TrialProgress& progress);
 
-/// Points of one scan for a picture.
+/// Points of one scan for a picture; all arrays have one entry per point.
 struct ScanPicture {
-  Points points;  ///< robot frame, metres; those that the description looks at
-  /// Per point: index of the target whose measured cluster it is in, -1 for ground, -2 for others.
-  std::vector<int> target;
   static constexpr int kGround = -1;
   static constexpr int kOther = -2;
+  Points points;  ///< robot frame, metres; those that the description looks at
+  /// Index of the target that the point comes from, `kGround`, or `kOther` for other solids.
+  std::vector<int> source;
+  /// Index of the target whose measured cluster the point is in, `kGround`, or `kOther` for other
+  /// clusters.
+  std::vector<int> cluster;
 };
 
 /// The scan of trial 0.
