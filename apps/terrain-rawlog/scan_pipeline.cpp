@@ -63,6 +63,13 @@ view::LeftOutReturns left_out(const io::ReturnCounts& counts) {
   return {counts.no_return, counts.not_finite, counts.out_of_range};
 }
 
+ScanView view_of(const io::Scan& scan) {
+  const bool one_origin = scan.origin_of.empty();
+  const BeamOrigins origins{scan.ray_origins.empty() ? nullptr : scan.ray_origins.data(),
+                            one_origin ? nullptr : scan.origin_of.data()};
+  return {scan.points.view(), origins};
+}
+
 void describe_scan(ScanPipeline& pipeline, view::ScanRecord& record) {
   const Clock::time_point start = Clock::now();
   const io::Trajectory* trajectory = pipeline.trajectory.empty() ? nullptr : &pipeline.trajectory;
@@ -70,7 +77,7 @@ void describe_scan(ScanPipeline& pipeline, view::ScanRecord& record) {
   record.milliseconds.transform = milliseconds_since(start);
 
   StageTimer timer(record.milliseconds);
-  describe(pipeline.scan.points.view(), pipeline.params.description, pipeline.workspace,
+  describe(view_of(pipeline.scan), pipeline.params.description, pipeline.workspace,
            pipeline.description, &timer);
   record.milliseconds.total = milliseconds_since(start);
   record.stamp = pipeline.scan.stamp;

@@ -128,13 +128,38 @@ TEST(Csv, ClustersReadBackExactly) {
   EXPECT_NEAR(number(row.at("max_y")), -0.4, 1e-9);
 }
 
+// The paper's method gives a direction, but no uncertainty; the beam method both.
+TEST(Csv, UncertaintiesAreThereWhereTheMethodKnowsThem) {
+  EXPECT_EQ(rows_of(clusters_csv())[0].at("direction_deg"), "0");
+  EXPECT_EQ(rows_of(clusters_csv())[0].at("angle_sigma_deg"), "");
+  Description description = two_clusters();
+  Slope& slope = description.things[0].slope;
+  slope.direction = 0.25;
+  slope.angle_sigma = 0.001;
+  slope.direction_sigma = 0.125;
+  slope.range_sigma = 0.02;
+  slope.to_ground = {FeatureStatus::kOk, 0.5, 0.0625, {0.0, 0.0, 1.0}, 0.0};
+  std::ostringstream out;
+  write_clusters_csv_header(out);
+  write_clusters_csv(out, some_scan(), description);
+  const auto row = rows_of(out.str())[0];
+  EXPECT_DOUBLE_EQ(number(row.at("direction_deg")), 14.32394487827058);
+  EXPECT_DOUBLE_EQ(number(row.at("angle_sigma_deg")), 0.05729577951308232);
+  EXPECT_DOUBLE_EQ(number(row.at("direction_sigma_deg")), 7.16197243913529);
+  EXPECT_EQ(row.at("range_sigma"), "0.02");
+  EXPECT_EQ(row.at("to_ground_status"), "ok");
+  EXPECT_DOUBLE_EQ(number(row.at("to_ground_deg")), 28.64788975654116);
+  EXPECT_DOUBLE_EQ(number(row.at("to_ground_sigma_deg")), 3.580986219567645);
+}
+
 TEST(Csv, FeaturesThatWereNotComputedAreEmptyAndNeverNaN) {
   const auto rows = rows_of(clusters_csv());
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[1].at("roughness_status"), "not_needed");
   EXPECT_EQ(rows[1].at("slope_status"), "not_needed");
   for (const char* column : {"rough", "lambda_0", "lambda_1", "lambda_2", "angle_deg", "normal_x",
-                             "normal_y", "normal_z", "inliers", "iterations"}) {
+                             "normal_y", "normal_z", "inliers", "iterations", "direction_deg",
+                             "angle_sigma_deg", "range_sigma", "to_ground_deg"}) {
     EXPECT_EQ(rows[1].at(column), "") << column;
   }
   EXPECT_EQ(clusters_csv().find("nan"), std::string::npos);

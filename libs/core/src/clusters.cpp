@@ -134,4 +134,23 @@ void gather_points(const PointSlots& point_slots, const Clusters& clusters,
   restore_starts(rows.first);
 }
 
+void gather_points_by_slot(const PointSlots& point_slots,
+                           const std::vector<std::uint8_t>& slot_wanted, IndexRows& rows) {
+  const auto is_wanted = [&](std::int32_t slot) {
+    return slot >= 0 && slot_wanted[static_cast<std::size_t>(slot)] != 0;
+  };
+  rows.first.assign(slot_wanted.size() + 1, 0);
+  for (const std::int32_t slot : point_slots) {
+    if (is_wanted(slot)) ++rows.first[static_cast<std::size_t>(slot) + 1];
+  }
+  std::partial_sum(rows.first.begin(), rows.first.end(), rows.first.begin());
+  rows.items.resize(static_cast<std::size_t>(rows.first.back()));
+  for (std::size_t i = 0; i < point_slots.size(); ++i) {
+    if (!is_wanted(point_slots[i])) continue;
+    std::int32_t& next = rows.first[static_cast<std::size_t>(point_slots[i])];
+    rows.items[static_cast<std::size_t>(next++)] = static_cast<std::int32_t>(i);
+  }
+  restore_starts(rows.first);
+}
+
 }  // namespace mrpt_terrain

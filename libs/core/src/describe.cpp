@@ -56,10 +56,9 @@ void measure_height_and_roughness(const DescriptionParams& params, DescriptionWo
   }
 }
 
-// Slope of the clusters whose class depends on it.
-void measure_slopes(const PointsView& points, const DescriptionParams& params,
-                    DescriptionWorkspace& workspace, Description& description) {
-  std::vector<ClusterDescription>& things = description.things;
+// Points of each cluster whose slope is wanted, 0 for the others; false if there are none.
+bool find_wanted_slopes(const DescriptionParams& params, DescriptionWorkspace& workspace,
+                        const std::vector<ClusterDescription>& things) {
   workspace.points_wanted.assign(things.size(), 0);
   bool any = false;
   for (std::size_t k = 0; k < things.size(); ++k) {
@@ -71,13 +70,59 @@ void measure_slopes(const PointsView& points, const DescriptionParams& params,
     workspace.points_wanted[k] = things[k].points;
     any = true;
   }
-  if (!any) return;
+  return any;
+}
+
+void measure_slopes_by_ransac(const PointsView& points, const SlopeParams& params,
+                              DescriptionWorkspace& workspace, Description& description) {
   gather_points(workspace.point_slots, description.clusters, workspace.points_wanted,
                 workspace.points_of);
-  for (std::size_t k = 0; k < things.size(); ++k) {
+  for (std::size_t k = 0; k < description.things.size(); ++k) {
     if (workspace.points_wanted[k] == 0) continue;
-    things[k].slope =
-        estimate_slope(points, workspace.points_of.row(k), params.slope, k, workspace.slope);
+    description.things[k].slope =
+        estimate_slope(points, workspace.points_of.row(k), params, k, workspace.slope);
+  }
+}
+
+// Marks the slots whose points the estimates may look at.
+void want_slots_around(const Description& description, const BeamSlopeParams& params,
+                       DescriptionWorkspace& workspace) {
+  const ElevationGrid& grid = description.grid;
+  workspace.slot_wanted.assign(grid.observed(), 0);
+  for (std::size_t k = 0; k < description.things.size(); ++k) {
+    if (workspace.points_wanted[k] == 0) continue;
+    const CellBox box =
+        cells_around(grid, description.clusters.slots.row(k), beam_slope_reach(grid, params));
+    for (int l = box.low.l; l <= box.high.l; ++l) {
+      for (int w = box.low.w; w <= box.high.w; ++w) {
+        const Slot slot = grid.slot_at({l, w});
+        if (slot != kUnobserved) workspace.slot_wanted[static_cast<std::size_t>(slot)] = 1;
+      }
+    }
+  }
+}
+
+void measure_slopes_by_beams(const ScanView& scan, const DescriptionParams& params,
+                             DescriptionWorkspace& workspace, Description& description) {
+  want_slots_around(description, params.beam_slope, workspace);
+  gather_points_by_slot(workspace.point_slots, workspace.slot_wanted, workspace.points_of);
+  const BeamSlopeInput input{scan.points,        scan.origins,         description.grid,
+                             description.ground, description.clusters, workspace.points_of};
+  for (std::size_t k = 0; k < description.things.size(); ++k) {
+    if (workspace.points_wanted[k] == 0) continue;
+    description.things[k].slope =
+        estimate_beam_slope(input, k, params.beam_slope, params.slope.seed, workspace.beam_slope);
+  }
+}
+
+// Slope of the clusters whose class depends on it.
+void measure_slopes(const ScanView& scan, const DescriptionParams& params,
+                    DescriptionWorkspace& workspace, Description& description) {
+  if (!find_wanted_slopes(params, workspace, description.things)) return;
+  if (params.slope.method == SlopeMethod::kBeam) {
+    measure_slopes_by_beams(scan, params, workspace, description);
+  } else {
+    measure_slopes_by_ransac(scan.points, params.slope, workspace, description);
   }
 }
 
@@ -92,12 +137,12 @@ void classify_all(const ClassParams& params, std::vector<TerrainClass>& class_of
 
 }  // namespace
 
-void describe(const PointsView& points, const DescriptionParams& params,
+void describe(const ScanView& scan, const DescriptionParams& params,
               DescriptionWorkspace& workspace, Description& description, StageListener* listener) {
   const auto done = [listener](Stage stage) {
     if (listener != nullptr) listener->stage_done(stage);
   };
-  description.projection = build_elevation_grid(points, params.grid, workspace.grid,
+  description.projection = build_elevation_grid(scan.points, params.grid, workspace.grid,
                                                 description.grid, workspace.point_slots);
   done(Stage::kGrid);
   segment_ground(description.grid, params.ground, workspace.ground,
@@ -108,12 +153,12 @@ void describe(const PointsView& points, const DescriptionParams& params,
   done(Stage::kClusters);
   measure_height_and_roughness(params, workspace, description);  // (3), (4)
   done(Stage::kHeightAndRoughness);
-  measure_slopes(points, params, workspace, description);  // (5), (6)
+  measure_slopes(scan, params, workspace, description);  // (5), (6)
   done(Stage::kSlope);
   classify_all(params.classes, workspace.class_of, description.things);  // Table 1
   done(Stage::kClasses);
   label_cells(description.ground, description.clusters, workspace.class_of, description.cells);
-  label_points(points, workspace.point_slots, description.cells, description.clusters,
+  label_points(scan.points, workspace.point_slots, description.cells, description.clusters,
                params.ground, workspace.labels, description.labels);
   done(Stage::kLabels);
 }

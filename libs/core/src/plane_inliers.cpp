@@ -5,20 +5,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "wide_registers.h"
+
 namespace mrpt_terrain {
 namespace {
 
 constexpr std::size_t kBlock = 512;
 // Sine of the smallest angle at which three points still span a plane.
 constexpr float kLeastSine = 1e-4F;
-
-// The wider registers are chosen when the program starts. Counts are whole numbers and every
-// distance is computed alike (-ffp-contract=off), so that both versions count the same.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
-#define MRPT_TERRAIN_WIDE_REGISTERS __attribute__((target_clones("avx2", "default")))
-#else
-#define MRPT_TERRAIN_WIDE_REGISTERS
-#endif
 
 MRPT_TERRAIN_WIDE_REGISTERS
 std::int32_t count_range(const PointsView& cloud, std::size_t begin, std::size_t end,

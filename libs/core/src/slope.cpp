@@ -98,6 +98,11 @@ double inclination(double normal_z) { return std::acos(std::min(1.0, std::abs(no
 
 }  // namespace
 
+double direction_of(const Eigen::Vector3d& normal) {
+  if (normal.x() == 0.0 && normal.y() == 0.0) return 0.0;
+  return std::atan2(-normal.y(), -normal.x());
+}
+
 Slope estimate_slope(const PointsView& points, IndexRange members, const SlopeParams& params,
                      std::uint64_t stream, SlopeWorkspace& workspace) {
   Slope result;
@@ -135,6 +140,7 @@ Slope estimate_slope(const PointsView& points, IndexRange members, const SlopePa
   result.normal = *normal;
   result.offset = -normal->dot(inliers.mean() + centre);
   result.angle = inclination(normal->z());
+  result.direction = direction_of(*normal);
   return result;
 }
 

@@ -16,11 +16,16 @@
 /// All that the project knows of Embree, for versions 3 and 4.
 namespace mrpt_terrain::sim {
 
-/// Rays of one packet.
-inline constexpr std::size_t kPacket = 8;
-using RayPacket = RTCRayHit8;
+/// Rays of one packet: the width of the oldest instruction set, which is the one in use.
+inline constexpr std::size_t kPacket = 4;
+using RayPacket = RTCRayHit4;
 /// Primitive of a ray that met nothing.
 inline constexpr std::uint32_t kNoTriangle = RTC_INVALID_GEOMETRY_ID;
+
+/// Which rays of a packet count: -1 yes, 0 no.
+struct alignas(16) ValidMask {
+  std::array<int, kPacket> lanes{};
+};
 
 /// Triangles in single precision, ready for rays. Built by one thread, so that equal input gives
 /// equal trees. Throws std::runtime_error with Embree's own message.
@@ -32,18 +37,18 @@ class EmbreeScene {
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-  /// First hits of the rays whose `valid` is -1 (0: left out) between tnear and tfar.
-  void intersect(const std::array<int, kPacket>& valid, RayPacket& packet) const {
+  /// First hits of the valid rays between tnear and tfar.
+  void intersect(const ValidMask& valid, RayPacket& packet) const {
 #if RTC_VERSION_MAJOR >= 4
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
     arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-    rtcIntersect8(valid.data(), scene_, &packet, &arguments);
+    rtcIntersect4(valid.lanes.data(), scene_, &packet, &arguments);
 #else
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect8(valid.data(), scene_, &context, &packet);
+    rtcIntersect4(valid.lanes.data(), scene_, &context, &packet);
 #endif
   }
 

@@ -13,7 +13,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool is_castable(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   const double square = direction.squaredNorm();
-  return square > 0.0 && std::isfinite(origin.sum() + square);
+  // Embree's own limit is 1e18; nobody is that far away.
+  return square > 0.0 && square < 1e15 && origin.squaredNorm() < 1e30;
 }
 
 TriangleSet::TriangleSet(const Mesh& mesh, Part part) {
@@ -52,51 +53,60 @@ void TriangleSet::measure(const Mesh& mesh, const std::vector<std::uint32_t>& me
   }
 }
 
+void TriangleSet::load(const RayBlock& rays, std::size_t k, RayPacket& packet) const {
+  packet.ray.org_x[k] = static_cast<float>(rays.ox[k] - centre_.x());
+  packet.ray.org_y[k] = static_cast<float>(rays.oy[k] - centre_.y());
+  packet.ray.org_z[k] = static_cast<float>(rays.oz[k] - centre_.z());
+  packet.ray.dir_x[k] = static_cast<float>(rays.dx[k]);
+  packet.ray.dir_y[k] = static_cast<float>(rays.dy[k]);
+  packet.ray.dir_z[k] = static_cast<float>(rays.dz[k]);
+  packet.ray.tnear[k] = 0.0F;
+  // Beyond the limit by more than single precision loses; the limit itself is kept in double.
+  packet.ray.tfar[k] = static_cast<float>(rays.max_range[k] * 1.00001 + 1e-4);
+  packet.ray.time[k] = 0.0F;
+  packet.ray.mask[k] = 0xFFFFFFFFU;
+  packet.ray.id[k] = 0;
+  packet.ray.flags[k] = 0;
+}
+
+void TriangleSet::resolve(const RayBlock& rays, std::size_t k, const RayPacket& packet,
+                          BlockHits& hits) const {
+  const std::uint32_t triangle = triangle_[packet.hit.primID[k]];
+  const Plane& plane = planes_[triangle];
+  const double approach = plane.nx * rays.dx[k] + plane.ny * rays.dy[k] + plane.nz * rays.dz[k];
+  const double room = plane.offset - (plane.nx * (rays.ox[k] - centre_.x()) +
+                                      plane.ny * (rays.oy[k] - centre_.y()) +
+                                      plane.nz * (rays.oz[k] - centre_.z()));
+  const double single = static_cast<double>(packet.ray.tfar[k]);
+  double range = room / approach;
+  // Almost along the plane the quotient says nothing.
+  if (!(std::abs(range - single) <= 0.01 * std::max(1.0, single))) range = single;
+  range = std::max(range, 0.0);
+  if (range > rays.max_range[k]) return;
+  hits.range[k] = range;
+  hits.triangle[k] = triangle;
+  hits.cos_incidence[k] = std::min(std::abs(approach), 1.0);
+}
+
 void TriangleSet::cast(const RayBlock& rays, BlockHits& hits) const {
-  alignas(32) std::array<int, kPacket> valid{};
+  ValidMask valid;
   RayPacket packet;
   for (std::size_t k = 0; k < kPacket; ++k) {
     const bool castable =
         k < rays.size && rays.max_range[k] > 0.0 &&
         is_castable({rays.ox[k], rays.oy[k], rays.oz[k]}, {rays.dx[k], rays.dy[k], rays.dz[k]});
-    valid[k] = castable ? -1 : 0;
-    packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    valid.lanes[k] = castable ? -1 : 0;
+    packet.hit.geomID[k] = kNoTriangle;
     hits.range[k] = kInfinity;
     hits.triangle[k] = kNoTriangle;
     hits.cos_incidence[k] = 1.0;
-    if (!castable) continue;
-    packet.ray.org_x[k] = static_cast<float>(rays.ox[k] - centre_.x());
-    packet.ray.org_y[k] = static_cast<float>(rays.oy[k] - centre_.y());
-    packet.ray.org_z[k] = static_cast<float>(rays.oz[k] - centre_.z());
-    packet.ray.dir_x[k] = static_cast<float>(rays.dx[k]);
-    packet.ray.dir_y[k] = static_cast<float>(rays.dy[k]);
-    packet.ray.dir_z[k] = static_cast<float>(rays.dz[k]);
-    packet.ray.tnear[k] = 0.0F;
-    // Beyond the limit by more than single precision loses; the limit itself is kept in double.
-    packet.ray.tfar[k] = static_cast<float>(rays.max_range[k] * 1.00001 + 1e-4);
-    packet.ray.time[k] = 0.0F;
-    packet.ray.mask[k] = 0xFFFFFFFFU;
-    packet.ray.id[k] = 0;
-    packet.ray.flags[k] = 0;
+    if (castable) load(rays, k, packet);
   }
   scene_->intersect(valid, packet);
   for (std::size_t k = 0; k < rays.size; ++k) {
-    if (valid[k] == 0 || packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
-    const std::uint32_t triangle = triangle_[packet.hit.primID[k]];
-    const Plane& plane = planes_[triangle];
-    const double approach = plane.nx * rays.dx[k] + plane.ny * rays.dy[k] + plane.nz * rays.dz[k];
-    const double room = plane.offset - (plane.nx * (rays.ox[k] - centre_.x()) +
-                                        plane.ny * (rays.oy[k] - centre_.y()) +
-                                        plane.nz * (rays.oz[k] - centre_.z()));
-    const double single = packet.ray.tfar[k];
-    double range = room / approach;
-    // Almost along the plane the quotient says nothing.
-    if (!(std::abs(range - single) <= 0.01 * std::max(1.0, single))) range = single;
-    range = std::max(range, 0.0);
-    if (range > rays.max_range[k]) continue;
-    hits.range[k] = range;
-    hits.triangle[k] = triangle;
-    hits.cos_incidence[k] = std::min(std::abs(approach), 1.0);
+    if (valid.lanes[k] != 0 && packet.hit.geomID[k] != kNoTriangle) {
+      resolve(rays, k, packet, hits);
+    }
   }
 }
 

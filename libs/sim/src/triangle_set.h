@@ -60,6 +60,8 @@ class TriangleSet {
   struct Plane {
     double nx, ny, nz, offset;
   };
+  void load(const RayBlock& rays, std::size_t k, RayPacket& packet) const;
+  void resolve(const RayBlock& rays, std::size_t k, const RayPacket& packet, BlockHits& hits) const;
   void measure(const Mesh& mesh, const std::vector<std::uint32_t>& members);
 
   Eigen::Vector3d min_corner_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());

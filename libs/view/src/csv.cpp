@@ -61,15 +61,33 @@ void add_roughness(Line& line, const Roughness& roughness) {
   for (const double lambda : roughness.lambda) line.number(lambda);
 }
 
+/// What method `beam` adds; other methods know no standard deviation.
+void add_uncertainty(Line& line, const Slope& slope) {
+  if (!(slope.angle_sigma > 0.0)) {
+    line.empty(6);
+    return;
+  }
+  line.number(slope.angle_sigma * kDegrees).number(slope.direction_sigma * kDegrees);
+  line.number(slope.range_sigma);
+  line.text(name_of(slope.to_ground.status));
+  if (slope.to_ground.status != FeatureStatus::kOk) {
+    line.empty(2);
+    return;
+  }
+  line.number(slope.to_ground.angle * kDegrees).number(slope.to_ground.angle_sigma * kDegrees);
+}
+
 void add_slope(Line& line, const Slope& slope) {
   line.text(name_of(slope.status));
   if (slope.status != FeatureStatus::kOk) {
-    line.empty(6);
+    line.empty(13);
     return;
   }
   line.number(slope.angle * kDegrees);
   for (int axis = 0; axis < 3; ++axis) line.number(slope.normal[axis]);
   line.count(slope.inliers).count(slope.iterations);
+  line.number(slope.direction * kDegrees);
+  add_uncertainty(line, slope);
 }
 
 void add_cluster(Line& line, const ClusterDescription& thing) {
@@ -89,7 +107,8 @@ void write_clusters_csv_header(std::ostream& out) {
   constexpr std::string_view kHeader =
       "scan,stamp,cluster,class,x,y,min_x,min_y,max_x,max_y,cells,points,h_d,h_m,h_f,h_min,h_max,"
       "roughness_status,rough,lambda_0,lambda_1,lambda_2,slope_status,angle_deg,normal_x,normal_y,"
-      "normal_z,inliers,iterations\n";
+      "normal_z,inliers,iterations,direction_deg,angle_sigma_deg,direction_sigma_deg,range_sigma,"
+      "to_ground_status,to_ground_deg,to_ground_sigma_deg\n";
   out.write(kHeader.data(), static_cast<std::streamsize>(kHeader.size()));
 }
 

@@ -77,4 +77,10 @@ void find_clusters(const ElevationGrid& grid, const GroundSegmentation& ground,
 void gather_points(const PointSlots& point_slots, const Clusters& clusters,
                    const std::vector<std::int32_t>& points_wanted, IndexRows& rows);
 
+/// Points of the wanted slots: per slot the indices of its points, ascending.
+/// \param slot_wanted per slot: 0 leaves its row empty
+/// \param[out] rows one row per slot
+void gather_points_by_slot(const PointSlots& point_slots,
+                           const std::vector<std::uint8_t>& slot_wanted, IndexRows& rows);
+
 }  // namespace mrpt_terrain

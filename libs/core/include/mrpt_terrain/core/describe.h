@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mrpt_terrain/core/beam_slope.h"
 #include "mrpt_terrain/core/classes.h"
 #include "mrpt_terrain/core/clusters.h"
 #include "mrpt_terrain/core/elevation_grid.h"
@@ -25,6 +26,7 @@ struct DescriptionParams {
   ClusterParams clusters;
   RoughnessParams roughness;
   SlopeParams slope;
+  BeamSlopeParams beam_slope;
   ClassParams classes;
 
   template <class Self, class Visitor>
@@ -34,6 +36,7 @@ struct DescriptionParams {
     visit(self.clusters, "clusters", "Grids clustering");
     visit(self.roughness, "roughness", "Roughness, eq. (4) and Algorithm 1");
     visit(self.slope, "slope", "Slope angle, eqs. (5) and (6), Algorithm 2");
+    visit(self.beam_slope, "beam_slope", "Slope angle with noise along the beams, beam_slope.h");
     visit(self.classes, "classes", "Terrain classes, Table 1");
   }
 };
@@ -99,6 +102,8 @@ struct DescriptionWorkspace {
   GroundWorkspace ground;
   ClusterWorkspace clusters;
   SlopeWorkspace slope;
+  BeamSlopeWorkspace beam_slope;
+  std::vector<std::uint8_t> slot_wanted;
   LabelWorkspace labels;
   PointSlots point_slots;
   std::vector<Moments> cluster_moments;
@@ -107,15 +112,26 @@ struct DescriptionWorkspace {
   IndexRows points_of;
 };
 
+/// One scan as `describe` takes it: its points, and where their beams started if that is known.
+struct ScanView {
+  PointsView points;
+  BeamOrigins origins;
+
+  // NOLINTNEXTLINE(google-explicit-constructor): points alone are a scan of unknown origin.
+  ScanView(const PointsView& points_of_scan, const BeamOrigins& origins_of_beams = {})
+      : points(points_of_scan), origins(origins_of_beams) {}
+};
+
 /// Describes one scan by the method of Meng, Cao et al. 2018: elevation grid, ground segmentation,
 /// clustering, features, classes, labels.
 ///
 /// The same points and parameters give the same bytes on every run. No points, or none in the map,
 /// give an empty description and counts that say why.
-/// \param points in the robot frame (x forward, y left, z up, z = 0 on the ground), metres
+/// \param scan points and origins of their beams in the robot frame (x forward, y left, z up,
+/// z = 0 on the ground), metres; the origins are needed by `slope.method = beam` only
 /// \param[in,out] description overwritten
 /// \param listener told after each stage; may be null
-void describe(const PointsView& points, const DescriptionParams& params,
+void describe(const ScanView& scan, const DescriptionParams& params,
               DescriptionWorkspace& workspace, Description& description,
               StageListener* listener = nullptr);
 

@@ -14,13 +14,19 @@ enum class FeatureStatus : std::uint8_t {
   kTooFewPoints,  ///< fewer than three points
   kDegenerate,    ///< the points are on one spot or one line: no plane
   kNoConsensus,   ///< RANSAC found no plane that holds more than its own three points
+  kNoOrigin,      ///< the origins of the beams are not known
+  kNotPlanar,     ///< no plane explains enough of the points; the numbers are not trustworthy
+  kUncertain,     ///< the points leave the angle open; the numbers are not trustworthy
 };
-constexpr EnumNames<FeatureStatus, 5> enum_names(FeatureStatus) {
+constexpr EnumNames<FeatureStatus, 8> enum_names(FeatureStatus) {
   return {{{FeatureStatus::kOk, "ok"},
            {FeatureStatus::kNotNeeded, "not_needed"},
            {FeatureStatus::kTooFewPoints, "too_few_points"},
            {FeatureStatus::kDegenerate, "degenerate"},
-           {FeatureStatus::kNoConsensus, "no_consensus"}}};
+           {FeatureStatus::kNoConsensus, "no_consensus"},
+           {FeatureStatus::kNoOrigin, "no_origin"},
+           {FeatureStatus::kNotPlanar, "not_planar"},
+           {FeatureStatus::kUncertain, "uncertain"}}};
 }
 
 }  // namespace mrpt_terrain

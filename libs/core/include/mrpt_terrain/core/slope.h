@@ -12,8 +12,18 @@
 
 namespace mrpt_terrain {
 
+/// How slopes are estimated.
+enum class SlopeMethod : std::uint8_t {
+  kPaper = 0,  ///< RANSAC and least squares (this file)
+  kBeam,       ///< maximum likelihood with noise along the beams (beam_slope.h)
+};
+constexpr EnumNames<SlopeMethod, 2> enum_names(SlopeMethod) {
+  return {{{SlopeMethod::kPaper, "paper"}, {SlopeMethod::kBeam, "beam"}}};
+}
+
 /// Parameters of the slope estimate (paper, eqs. 5 and 6, Algorithm 2).
 struct SlopeParams {
+  SlopeMethod method = SlopeMethod::kPaper;
   double inlier_distance = 0.01;  ///< T_q (T_Segment in Algorithm 2), metres
   double inlier_share = 0.95;     ///< T_Inlier: RANSAC stops when the share of inliers exceeds it
   int max_iterations = 1000;      ///< MaxIterations
@@ -24,6 +34,9 @@ struct SlopeParams {
 
   template <class Self, class Visitor>
   static void visit_params(Self& self, Visitor&& visit) {
+    visit(self.method, ParamInfo{"method", "", "", 0, 0,
+                                 "paper: RANSAC and least squares; beam: noise along the beams, "
+                                 "section beam_slope"});
     visit(self.inlier_distance, ParamInfo{"inlier_distance", "T_q", "m", 0.0001, 1.0,
                                           "point-to-plane distance of an inlier"});
     visit(self.inlier_share, ParamInfo{"inlier_share", "T_Inlier", "", 0.0, 1.0,
@@ -38,16 +51,35 @@ struct SlopeParams {
   }
 };
 
-/// Slope of a cluster (paper, eqs. 5 and 6).
+/// Slope of a cluster against the ground around it; method `beam` only.
+struct SlopeToGround {
+  FeatureStatus status = FeatureStatus::kNotNeeded;  ///< kTooFewPoints: no ground seen around
+  double angle = 0.0;                                ///< radians, between the two planes
+  double angle_sigma = 0.0;                          ///< its standard deviation, radians
+  Eigen::Vector3d ground_normal = Eigen::Vector3d::UnitZ();  ///< unit, z >= 0
+  double ground_offset = 0.0;  ///< metres: ground_normal . p + ground_offset = 0 on the ground
+};
+
+/// Slope of a cluster (paper, eqs. 5 and 6). The standard deviations are those of method `beam`;
+/// method `paper` has none and leaves them 0.
 struct Slope {
   FeatureStatus status = FeatureStatus::kNotNeeded;
   double angle = 0.0;                                ///< alpha_s, radians, 0 to pi/2
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, z >= 0
-  double offset = 0.0;          ///< metres: normal . p + offset = 0 on the plane
-  std::int32_t inliers = 0;     ///< points within T_q of the best hypothesis
+  double offset = 0.0;           ///< metres: normal . p + offset = 0 on the plane
+  double direction = 0.0;        ///< where it rises, from x towards y, radians, (-pi, pi]
+  double angle_sigma = 0.0;      ///< standard deviation of the angle, radians
+  double direction_sigma = 0.0;  ///< standard deviation of the direction, radians, at most pi
+  double range_sigma = 0.0;      ///< noise along the beams that the points show, metres
+  SlopeToGround to_ground;
+  std::int32_t inliers = 0;     ///< points within T_q of the best hypothesis, or that counted
   std::int32_t points = 0;      ///< points of the cluster
   std::int32_t iterations = 0;  ///< hypotheses drawn
 };
+
+/// Where a plane rises, from x towards y, radians; 0 for a level one.
+/// \param normal unit, z >= 0
+[[nodiscard]] double direction_of(const Eigen::Vector3d& normal);
 
 /// Scratch memory of `estimate_slope`.
 struct SlopeWorkspace {
