@@ -73,6 +73,9 @@ eval::TrialPlan plan_of(const Options& options, const Job& job,
   plan.params.slope.inlier_distance = options.inlier_distance;
   // Figures 9 and 10 show features of clusters whose class does not need them.
   plan.params.classes.all_features = job.entry->table == 3;
+  // To the letter: also walls are fitted along z, which makes the angle of cluster 2 fluctuate.
+  if (job.entry->table == 3) plan.params.slope.vertical_from = 90.0 * kRadian;
+  plan.with_beam = job.entry->table >= 4;
   plan.conditions = job.conditions;
   plan.trials = options.trials;
   plan.seed = options.seed;

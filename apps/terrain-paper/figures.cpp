@@ -64,6 +64,11 @@ struct Window {
   double x0, x1, y0, y1;
 };
 
+bool is_inside(const Window& window, const mrpt_terrain::Points& points, std::size_t i) {
+  return points.x[i] >= window.x0 && points.x[i] <= window.x1 && points.y[i] >= window.y0 &&
+         points.y[i] <= window.y1;
+}
+
 /// One colour of a cloud.
 struct Layer {
   std::string title;
@@ -74,14 +79,14 @@ using PointColour = std::vector<int> eval::ScanPicture::*;
 
 // Points of the layers, one gnuplot index each; a layer without points keeps its index.
 Figure::Data cloud_data(const std::string& file, const SceneCloud& cloud, PointColour colour,
-                        const std::vector<Layer>& layers) {
+                        const Window& window, const std::vector<Layer>& layers) {
   std::string text = "# x y z of one scan, metres, robot frame; one block per colour\n";
   const eval::ScanPicture& picture = cloud.picture;
   for (const Layer& layer : layers) {
     text += "# " + layer.title + "\n";
     std::size_t count = 0;
     for (std::size_t i = 0; i < picture.points.size(); ++i) {
-      if ((picture.*colour)[i] != layer.number) continue;
+      if ((picture.*colour)[i] != layer.number || !is_inside(window, picture.points, i)) continue;
       ++count;
       text += fixed(picture.points.x[i], 4) + " " + fixed(picture.points.y[i], 4) + " " +
               fixed(picture.points.z[i], 4) + "\n";
@@ -123,12 +128,23 @@ std::string layers_plot(const std::string& file, const std::string& columns,
   return plot + "\n";
 }
 
-// A multiplot with room for one key below all panels.
-std::string panels(int rows, int columns, double bottom) {
-  return "set multiplot layout " + std::to_string(rows) + "," + std::to_string(columns) +
-         " margins 0.08,0.98," + fixed(bottom, 3) + ",0.94 spacing 0.09," +
-         fixed(rows > 1 ? 0.07 : 0.0, 2) + "\nset key at screen 0.5," + fixed(0.1 * bottom, 4) +
-         " center bottom horizontal\n";
+/// Layout of the panels of a figure, pixels.
+struct Layout {
+  int rows, columns;
+  int width, height;  ///< of the picture
+};
+
+// A multiplot with room for one line of keys below all panels.
+std::string panels(const Layout& layout) {
+  const double unit = 1.0 / layout.height;
+  const double top = 1.0 - 40.0 * unit;
+  const double bottom = 100.0 * unit;
+  return "set multiplot layout " + std::to_string(layout.rows) + "," +
+         std::to_string(layout.columns) + " margins " + fixed(80.0 / layout.width, 3) + "," +
+         fixed(1.0 - 20.0 / layout.width, 3) + "," + fixed(bottom, 3) + "," + fixed(top, 3) +
+         " spacing " + fixed(90.0 / layout.width, 3) + "," + fixed(100.0 * unit, 3) +
+         "\nset key at screen 0.5," + fixed(15.0 * unit, 4) +
+         " center bottom horizontal maxrows 1\n";
 }
 
 // Left: seen from above, y to the left as the robot sees it. Right: seen along x. Only the first
@@ -159,18 +175,23 @@ std::string at_noise(const Results& results) {
 // Figures 6 and 8: one scene in two views.
 Figure scene_figure(const std::string& name, const std::string& caption, const SceneCloud& cloud,
                     const std::string& what, const std::vector<Layer>& layers) {
-  Figure figure{
-      name, caption, {}, {cloud_data(name + ".dat", cloud, &eval::ScanPicture::source, layers)}};
-  figure.script = script_of(
-      name, 1100, 520,
-      panels(1, 2, 0.18) + views(name + ".dat", what, window_of(cloud, 0.35), layers) + kReset);
+  const Window window = window_of(cloud, 0.35);
+  const Layout layout{2, 1, 900, 900};
+  Figure figure{name,
+                caption,
+                {},
+                {cloud_data(name + ".dat", cloud, &eval::ScanPicture::source, window, layers)}};
+  figure.script = script_of(name, layout.width, layout.height,
+                            panels(layout) + views(name + ".dat", what, window, layers) + kReset);
   return figure;
 }
 
 // Figures 11 and 13: three slopes in two views each.
 std::optional<Figure> slopes_figure(const Results& results, const std::string& name,
                                     const std::vector<std::string>& slopes) {
-  std::string body = panels(static_cast<int>(slopes.size()), 2, 0.075);
+  const auto rows = static_cast<int>(slopes.size());
+  const Layout layout{rows, 2, 1000, 430 * rows};
+  std::string body = panels(layout);
   Figure figure{name,
                 "Point clouds of the slopes, top and front view (" + at_noise(results) +
                     "). Blue: the cluster whose angle is estimated; grey: ground; orange: other "
@@ -184,10 +205,11 @@ std::optional<Figure> slopes_figure(const Results& results, const std::string& n
     const SceneCloud* cloud = cloud_of(results, slope);
     if (cloud == nullptr) return std::nullopt;
     const std::string file = name + "_" + slope + ".dat";
-    figure.data.push_back(cloud_data(file, *cloud, &eval::ScanPicture::cluster, layers));
-    body += views(file, "slope " + slope, window_of(*cloud, 0.35), layers);
+    const Window window = window_of(*cloud, 0.35);
+    figure.data.push_back(cloud_data(file, *cloud, &eval::ScanPicture::cluster, window, layers));
+    body += views(file, "slope " + slope, window, layers);
   }
-  figure.script = script_of(name, 1000, 430 * static_cast<int>(slopes.size()), body + kReset);
+  figure.script = script_of(name, layout.width, layout.height, body + kReset);
   return figure;
 }
 
@@ -236,8 +258,9 @@ Figure panels_figure(const std::string& name, const std::string& caption,
   Figure figure{name, caption, {}, {}};
   std::vector<const eval::Series*> columns;
   std::string header;
-  std::string body =
-      panels(1, static_cast<int>(items.size()), 0.24) + "set xlabel \"measurement\"\n";
+  const auto columns_of_panels = static_cast<int>(items.size());
+  const Layout layout{1, columns_of_panels, 430 * columns_of_panels, 400};
+  std::string body = panels(layout) + "set xlabel \"measurement\"\n";
   for (std::size_t k = 0; k < items.size(); ++k) {
     if (k == 1) body += "set key off\n";
     columns.push_back(items[k].series);
@@ -248,7 +271,7 @@ Figure panels_figure(const std::string& name, const std::string& caption,
             truth_plot(items[k].truth) + "\n";
   }
   figure.data.push_back(series_data(name + ".dat", header, columns));
-  figure.script = script_of(name, 430 * static_cast<int>(items.size()), 400, body + kReset);
+  figure.script = script_of(name, layout.width, layout.height, body + kReset);
   return figure;
 }
 
@@ -287,9 +310,10 @@ Figure features_figure(const Results& results, const std::vector<const TargetSer
             quoted("1") + " " + number + ".6";
   }
   figure.data.push_back(series_data(name + ".dat", header, columns));
+  const Layout layout{1, 2, 1100, 460};
   figure.script = script_of(
-      name, 1100, 460,
-      panels(1, 2, 0.24) +
+      name, layout.width, layout.height,
+      panels(layout) +
           "set xlabel \"measurement\"\n"
           "set title \"(a) height index\"\nset ylabel \"H_f, cm\"\nset yrange [0:*]\n" +
           heights +
@@ -384,7 +408,6 @@ void add_cluster_figures(const Results& results, std::vector<Figure>& figures) {
           at_noise(results) + ").",
       *cloud, "five clusters",
       {{"ground", "#b0b0b0", eval::ScanPicture::kGround},
-       {"other clusters", "#ff7f0e", eval::ScanPicture::kOther},
        {"cluster 1", "#8c1c13", 0},
        {"cluster 2", kRed, 1},
        {"cluster 3", kBlue, 2},
@@ -397,10 +420,11 @@ void add_cluster_figures(const Results& results, std::vector<Figure>& figures) {
     panels.push_back(
         {"cluster " + std::to_string(k + 1), "slope angle, deg", &clusters[k]->angle, truth});
   }
-  figures.push_back(panels_figure("figure_09",
-                                  "Slope angle of clusters 2, 3 and 4 over the measurements (" +
-                                      at_noise(results) + "); only cluster 3 is a slope.",
-                                  panels));
+  figures.push_back(panels_figure(
+      "figure_09",
+      "Slope angle of clusters 2, 3 and 4 over the measurements (" + at_noise(results) +
+          "); only cluster 3 is a slope. Planes are fitted along z, to the letter.",
+      panels));
   figures.push_back(features_figure(results, clusters));
 }
 

@@ -40,7 +40,7 @@ std::string of_scans(std::size_t count, const Results& results) {
 }
 
 constexpr const char* kSplitRule =
-    " several clusters; the one with most of its returns is measured.";
+    " falls into several clusters; the one with most of its returns is measured.";
 
 /// A statistic of Tables 2 and 3: its name and where it is in theirs and ours.
 struct ErrorColumn {

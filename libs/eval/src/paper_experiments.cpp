@@ -2,6 +2,7 @@
 #include "mrpt_terrain/eval/paper_experiments.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -146,39 +147,69 @@ bool is_asked(const PlaneEstimator& estimator, const TrialPlan& plan, std::size_
   return limit == plan.limits.end() || trial < limit->second;
 }
 
-Measurement measure(const Target& target, const PaperScene& scene,
-                    const PlaneEstimators& estimators, const TrialPlan& plan, std::size_t trial,
-                    std::uint64_t estimator_seed, Scratch& scratch) {
-  const Match found = match(target, *scene.world, scratch);
+// The same scan once more with the other slope method: the stages before it give the same clusters.
+void describe_with_beams(const PaperScene& scene, const DescriptionParams& paper_params,
+                         Scratch& scratch) {
+  DescriptionParams params = paper_params;
+  params.slope.method = SlopeMethod::kBeam;
+  params.classes.all_features = true;
+  const Eigen::Vector3f sensor = scene.sensor.T_robot_sensor.translation().cast<float>();
+  const std::array<float, 3> origin = {sensor.x(), sensor.y(), sensor.z()};
+  describe({scratch.points.view(), {&origin, nullptr}}, params, scratch.workspace,
+           scratch.beam_description);
+}
+
+/// One trial and what it is made of.
+struct TrialContext {
+  const PaperScene& scene;
+  const PlaneEstimators& estimators;
+  const TrialPlan& plan;
+  std::size_t number;
+  TrialDraws draws;
+};
+
+std::vector<PlaneEstimate> estimate_planes(const TrialContext& context, IndexRange members,
+                                           const PointsView& points) {
+  std::vector<PlaneEstimate> planes;
+  for (const auto& estimator : context.estimators) {
+    PlaneEstimate plane;
+    plane.status = FeatureStatus::kNotNeeded;
+    if (is_asked(*estimator, context.plan, context.number)) {
+      plane = estimator->estimate(points, members, context.plan.threshold,
+                                  seed_of(estimator->name(), context.draws.estimator_seed));
+    }
+    planes.push_back(plane);
+  }
+  return planes;
+}
+
+Measurement measure(const TrialContext& context, const Target& target, Scratch& scratch) {
+  const Match found = match(target, *context.scene.world, scratch);
   Measurement result;
   result.clusters = found.clusters;
   if (found.clusters == 0) return result;
   const auto cluster = static_cast<std::size_t>(found.cluster);
   result.description = scratch.description.things[cluster];
-  const IndexRange members = members_of(found.cluster, scratch);
-  for (const auto& estimator : estimators) {
-    PlaneEstimate plane;
-    plane.status = FeatureStatus::kNotNeeded;
-    if (is_asked(*estimator, plan, trial)) {
-      plane = estimator->estimate(scratch.points.view(), members, plan.threshold,
-                                  seed_of(estimator->name(), estimator_seed));
-    }
-    result.planes.push_back(plane);
+  if (context.plan.with_beam) {
+    const Slope& slope = scratch.beam_description.things[cluster].slope;
+    result.beam = {slope.status, slope.angle, slope.angle_sigma};
+    result.beam_to_ground = {slope.to_ground.status, slope.to_ground.angle,
+                             slope.to_ground.angle_sigma};
   }
+  result.planes =
+      estimate_planes(context, members_of(found.cluster, scratch), scratch.points.view());
   return result;
 }
 
-Trial run_trial(const PaperScene& scene, const PlaneEstimators& estimators, const TrialPlan& plan,
-                std::size_t number, Scratch& scratch) {
-  const TrialDraws draws = draw(scene, plan, number);
-  scan(scene, plan.conditions, draws, scratch);
-  DescriptionParams params = plan.params;
-  params.slope.seed = draws.estimator_seed;
+Trial run_trial(const TrialContext& context, Scratch& scratch) {
+  scan(context.scene, context.plan.conditions, context.draws, scratch);
+  DescriptionParams params = context.plan.params;
+  params.slope.seed = context.draws.estimator_seed;
   describe(scratch.points.view(), params, scratch.workspace, scratch.description);
+  if (context.plan.with_beam) describe_with_beams(context.scene, params, scratch);
   Trial trial;
-  for (const Target& target : scene.targets) {
-    trial.push_back(
-        measure(target, scene, estimators, plan, number, draws.estimator_seed, scratch));
+  for (const Target& target : context.scene.targets) {
+    trial.push_back(measure(context, target, scratch));
   }
   return trial;
 }

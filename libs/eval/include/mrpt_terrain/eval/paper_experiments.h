@@ -80,8 +80,8 @@ struct TrialPlan {
   std::size_t trials = 50;
   std::uint64_t seed = 1;
   int threads = 1;
-  /// Inlier distance of the sampling estimators, metres.
-  double threshold = 0.01;
+  double threshold = 0.01;  ///< inlier distance of the sampling estimators, metres
+  bool with_beam = false;   ///< whether `slope.method = beam` measures too
   /// Estimators that see the first trials only, because they are slow: name and how many.
   std::map<std::string, std::size_t> limits;
 };
