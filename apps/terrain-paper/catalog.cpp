@@ -3,6 +3,13 @@
 
 namespace {
 
+// Cluster 4 of Figure 8: many boxes, of which the first is 4 and the others count on from 41.
+std::vector<int> cluttered_objects() {
+  std::vector<int> ids{4};
+  for (int id = 41; id < 60; ++id) ids.push_back(id);
+  return ids;
+}
+
 CatalogEntry slope(int table, const std::string& scene, const std::string& name) {
   return {table, scene, {{name, {1}}}};
 }
@@ -17,7 +24,7 @@ const std::vector<CatalogEntry>& catalog() {
        {{"cluster 1", {1}},
         {"cluster 2", {2}},
         {"cluster 3", {3}},
-        {"cluster 4", {4}},
+        {"cluster 4", cluttered_objects()},
         {"cluster 5", {5}}}},
       slope(4, "paper_slope_a", "A"),
       slope(4, "paper_slope_b", "B"),

@@ -300,8 +300,9 @@ std::vector<Trial> run_trials(const PaperScene& scene, const PlaneEstimators& es
   for (int k = 0; k < workers; ++k) {
     threads.emplace_back([&] {
       Scratch scratch;
-      queue.work(
-          [&](std::size_t number) { return run_trial(scene, estimators, plan, number, scratch); });
+      queue.work([&](std::size_t number) {
+        return run_trial({scene, estimators, plan, number, draw(scene, plan, number)}, scratch);
+      });
     });
   }
   queue.wait_for(workers, progress);
