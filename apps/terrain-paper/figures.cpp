@@ -73,7 +73,8 @@ bool is_inside(const Window& window, const mrpt_terrain::Points& points, std::si
 struct Layer {
   std::string title;
   const char* colour;
-  int number;  ///< as in ScanPicture
+  int number;            ///< as in ScanPicture
+  bool in_front = true;  ///< whether the front view shows it
 };
 using PointColour = std::vector<int> eval::ScanPicture::*;
 
@@ -116,13 +117,16 @@ std::string range(double low, double high) {
   return "[" + fixed(low, 3) + ":" + fixed(high, 3) + "]";
 }
 
+// With a key also for colours of which there are no points.
 std::string layers_plot(const std::string& file, const std::string& columns,
-                        const std::vector<Layer>& layers) {
-  std::string plot = "plot ";
+                        const std::vector<Layer>& layers, bool front) {
+  std::string plot;
   for (std::size_t k = 0; k < layers.size(); ++k) {
-    plot += (k == 0 ? "" : ", ") + quoted(file) + " index " + std::to_string(k) + " using " +
-            columns + " with points pt 7 ps 0.25 lc rgb " + quoted(layers[k].colour) +
-            " notitle, NaN with points pt 7 ps 1 lc rgb " + quoted(layers[k].colour) + " title " +
+    if (front && !layers[k].in_front) continue;
+    const std::string colour = quoted(layers[k].colour);
+    plot += (plot.empty() ? "plot " : ", ") + quoted(file) + " index " + std::to_string(k) +
+            " using " + columns + " with points pt 7 ps 0.25 lc rgb " + colour +
+            " notitle, NaN with points pt 7 ps 1 lc rgb " + colour + " title " +
             quoted(layers[k].title);
   }
   return plot + "\n";
@@ -154,10 +158,10 @@ std::string views(const std::string& file, const std::string& what, const Window
   const std::string leftwards = range(window.y1, window.y0);
   return "set size ratio -1\nset title " + quoted(what + ", top view") +
          "\nset xlabel \"y, m\"\nset ylabel \"x, m\"\nset xrange " + leftwards + "\nset yrange " +
-         range(window.x0, window.x1) + "\n" + layers_plot(file, "2:1", layers) +
+         range(window.x0, window.x1) + "\n" + layers_plot(file, "2:1", layers, false) +
          "set key off\nset size noratio\nset title " + quoted(what + ", front view") +
          "\nset xlabel \"y, m\"\nset ylabel \"z, m\"\nset xrange " + leftwards +
-         "\nset yrange [*:*]\n" + layers_plot(file, "2:3", layers);
+         "\nset yrange [*:*]\n" + layers_plot(file, "2:3", layers, true);
 }
 
 const SceneCloud* cloud_of(const Results& results, const std::string& target) {
@@ -317,7 +321,7 @@ Figure features_figure(const Results& results, const std::vector<const TargetSer
           "set xlabel \"measurement\"\n"
           "set title \"(a) height index\"\nset ylabel \"H_f, cm\"\nset yrange [0:*]\n" +
           heights +
-          "\nset title \"(b) roughness\"\nset ylabel \"R_n\"\nset key off\nset yrange [0.7:" +
+          "\nset title \"(b) roughness R_n\"\nunset ylabel\nset key off\nset yrange [0.7:" +
           fixed(static_cast<double>(clusters.size()) + 0.9, 1) + "]\nset ytics (" + tics + ")\n" +
           roughness + "\n" + kReset);
   return figure;
@@ -404,15 +408,16 @@ void add_cluster_figures(const Results& results, std::vector<Figure>& figures) {
   if (cloud == nullptr || clusters.size() != 5) return;
   figures.push_back(scene_figure(
       "figure_08",
-      "Point cloud of three obstacles (1, 2, 4) and two slopes (3, 5), top and front view (" +
+      "Point cloud of three obstacles (1, 2, 4) and two slopes (3, 5), top view, and front view of "
+      "clusters 3 and 4 (" +
           at_noise(results) + ").",
       *cloud, "five clusters",
       {{"ground", "#b0b0b0", eval::ScanPicture::kGround},
-       {"cluster 1", "#8c1c13", 0},
-       {"cluster 2", kRed, 1},
+       {"cluster 1", "#8c1c13", 0, false},
+       {"cluster 2", kRed, 1, false},
        {"cluster 3", kBlue, 2},
        {"cluster 4", "#e8697c", 3},
-       {"cluster 5", "#17becf", 4}}));
+       {"cluster 5", "#17becf", 4, false}}));
   std::vector<Panel> panels;
   for (const std::size_t k : {1, 2, 3}) {
     const std::optional<double> truth =

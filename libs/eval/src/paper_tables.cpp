@@ -46,7 +46,7 @@ Coverage coverage_of(const std::vector<Trial>& trials, std::size_t target, BeamM
   std::vector<double> sigmas;
   for (const Trial& trial : trials) {
     const BeamAngle& beam = trial[target].*member;
-    if (beam.status != FeatureStatus::kOk) continue;
+    if (trial[target].clusters == 0 || beam.status != FeatureStatus::kOk) continue;
     errors.push_back(kDegrees * beam.angle - truth);
     sigmas.push_back(kDegrees * beam.sigma);
   }
