@@ -206,6 +206,23 @@ TEST(RayCaster, RangesDoNotDependOnWhereTheMapBegins) {
   }
 }
 
+TEST(RayCaster, TerrainReachesToTheVeryEdgeOfTheGround) {
+  RandomGenerator random(19);
+  for (int trial = 0; trial < 200; ++trial) {
+    World world;
+    worlds::add_ground(world, 1000.0 * random.uniform(), 10.0 * random.uniform(), 0.25,
+                       1.0 + 30.0 * random.uniform());
+    const RayCaster caster(world);
+    const Eigen::Vector2d low = world.min_corner, high = world.max_corner;
+    for (const double x : {low.x() + 1e-9, high.x() - 1e-9}) {
+      for (const double y : {low.y() + 1e-9, 0.7 * low.y() + 0.3 * high.y(), high.y() - 1e-9}) {
+        ASSERT_TRUE(caster.terrain_at(x, y)) << x << " " << y;
+        EXPECT_NEAR(caster.terrain_at(x, y)->height, 0.25, 1e-12);
+      }
+    }
+  }
+}
+
 TEST(RayCaster, OddRaysHaveDefinedResults) {
   const World world = ground_and_box();
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -287,6 +304,27 @@ TEST(RayCaster, TerrainOfManyPlacesIsThatOfEachPlace) {
     // The greatest curvature is about 0.34 per metre, the half diagonal of a square 0.14 m.
     EXPECT_NEAR(terrain[k]->height, worlds::uneven_height(x[k], y[k]), 0.5 * 0.34 * 0.02);
     EXPECT_NEAR(terrain[k]->normal.norm(), 1.0, 1e-12);
+  }
+}
+
+// Along the vertical wall between two levels, where no triangle of the terrain lies across.
+TEST(RayCaster, TerrainIsWholeAlongVerticalWalls) {
+  RandomGenerator random(23);
+  for (int trial = 0; trial < 50; ++trial) {
+    const double x0 = -3.0 - random.uniform(), x1 = 2.0 * random.uniform() - 1.0,
+                 x2 = 3.0 + random.uniform();
+    World world;
+    worlds::add_patch(world.mesh, {x0, x0, 0}, {x1 - x0, 0, 0}, {0, x2 - x0, 0}, 0,
+                      SurfaceKind::kDrivable);
+    worlds::add_patch(world.mesh, {x1, x0, -0.3}, {x2 - x1, 0, 0}, {0, x2 - x0, 0}, 1,
+                      SurfaceKind::kDrivable);
+    worlds::add_patch(world.mesh, {x1, x0, -0.3}, {0, x2 - x0, 0}, {0, 0, 0.3}, 1,
+                      SurfaceKind::kFlank);
+    const RayCaster caster(world);
+    for (int k = 0; k < 2000; ++k) {
+      const double y = x0 + (x2 - x0) * random.uniform();
+      ASSERT_TRUE(caster.terrain_at(x1, y)) << x1 << " " << y;
+    }
   }
 }
 
@@ -391,6 +429,88 @@ TEST(RayCaster, MoversAgreeWithBlocksThatStandWhereTheyAre) {
     ASSERT_NEAR(hits.range[k], expected[k], 1e-6) << k;
   }
   EXPECT_GT(met, 3000U);
+}
+
+/// Hills under grass of 0.15 m in a turned rectangle.
+World grassy_hills() {
+  World world;
+  world.solids.resize(2);
+  worlds::add_height_field(world, 200, 0.1, worlds::uneven_height);
+  Medium grass;
+  grass.solid = 1;
+  grass.height = 0.15;
+  grass.density = 1.5;
+  grass.T_map_medium.rotate(Eigen::AngleAxisd(0.4, Vector3d::UnitZ()));
+  grass.half_extent = {6.0, 5.0, 0.0};
+  world.media.push_back(grass);
+  return world;
+}
+
+struct GrassPath {
+  double length = 0.0;  ///< metres of a ray in the grass
+  int entries = 0;      ///< how often it comes in
+};
+
+/// In small steps.
+GrassPath path_in_grass(const RayCaster& caster, const Ray& ray, double end, double step) {
+  const Medium& grass = caster.world().media[0];
+  const Eigen::Isometry3d T_grass_map = grass.T_map_medium.inverse();
+  GrassPath path;
+  bool inside = false;
+  for (double t = 0.5 * step; t < end; t += step) {
+    const Vector3d p = ray.origin + t * ray.direction;
+    const Vector3d own = T_grass_map * p;
+    const bool over = std::abs(own.x()) <= 6.0 && std::abs(own.y()) <= 5.0;
+    const bool was_inside = inside;
+    inside = over && p.z() - caster.terrain_at(p.x(), p.y())->height <= grass.height;
+    if (inside) path.length += step;
+    if (inside && !was_inside) ++path.entries;
+  }
+  return path;
+}
+
+/// Rays that come into the grass more than once.
+std::vector<Ray> rays_over_crests(const RayCaster& caster, std::size_t n) {
+  RandomGenerator random(17);
+  std::vector<Ray> result;
+  while (result.size() < n) {
+    const double angle = 2.0 * M_PI * random.uniform();
+    const Vector3d from(-7.0 * std::cos(angle), -7.0 * std::sin(angle),
+                        0.2 + 0.8 * random.uniform());
+    const Vector3d to = worlds::random_point(random, {-4, -4, 0}, {4, 4, 0.8});
+    const Ray ray{from, (to - from).normalized()};
+    Rays rays;
+    add_ray(rays, ray);
+    Hits hits;
+    caster.cast(rays, 15.0, hits);
+    if (caster.terrain_at(from.x(), from.y())->height > from.z()) continue;
+    const GrassPath path = path_in_grass(caster, ray, std::min(9.0, hits.range[0]), 0.02);
+    if (path.entries > 1 && path.length < 1.5) result.push_back(ray);
+  }
+  return result;
+}
+
+// The share of rays that get through is exp(-density * path).
+TEST(RayCaster, RaysThroughGrassOnHillsAreStoppedByItsWholePath) {
+  const World world = grassy_hills();
+  const RayCaster caster(world);
+  constexpr int kTrials = 4000;
+  constexpr double kStep = 0.002;
+  for (const Ray& ray : rays_over_crests(caster, 12)) {
+    Rays rays;
+    for (int trial = 0; trial < kTrials; ++trial) add_ray(rays, ray);
+    Hits hits;
+    caster.cast(rays, 9.0, hits);
+    const GrassPath path = path_in_grass(caster, ray, std::min(9.0, hits.range[0]), kStep);
+    caster.scatter(rays, 9.0, 5, 0, hits);
+    const auto stopped = std::count(hits.solid.begin(), hits.solid.end(), 1);
+    const double expected = 1.0 - std::exp(-1.5 * path.length);
+    // Four standard deviations, and a step of the oracle at each way in and out.
+    EXPECT_NEAR(
+        static_cast<double>(stopped) / kTrials, expected,
+        4.0 * std::sqrt(expected * (1.0 - expected) / kTrials) + 1.5 * kStep * 2.0 * path.entries)
+        << "path " << path.length << ", entries " << path.entries;
+  }
 }
 
 }  // namespace

@@ -6,13 +6,22 @@
 #include <cmath>
 #include <limits>
 
+#include "mrpt_terrain/sim/sweep.h"
+
 namespace mrpt_terrain::sim {
 namespace {
 
 constexpr std::size_t kMaxSubRays = 5;
 
-/// Diffuse reflectivity near 900 nm, typical values of dry surfaces.
-constexpr double reflectivity(Material material) {
+/// Share of the beam's light in a ray: a Gaussian beam is weak at its edge.
+double weight_of(std::size_t sub_ray, std::size_t sub_rays) {
+  if (sub_rays == 1) return 1.0;
+  return sub_ray == 0 ? 0.5 : 0.125;
+}
+
+}  // namespace
+
+double reflectivity(Material material) {
   switch (material) {
     case Material::kAsphalt:
       return 0.17;
@@ -38,14 +47,6 @@ constexpr double reflectivity(Material material) {
   }
   return 0.3;
 }
-
-/// Share of the beam's light in a ray: a Gaussian beam is weak at its edge.
-double weight_of(std::size_t sub_ray, std::size_t sub_rays) {
-  if (sub_rays == 1) return 1.0;
-  return sub_ray == 0 ? 0.5 : 0.125;
-}
-
-}  // namespace
 
 double brightness(const World& world, std::int32_t solid, double cos_incidence) {
   // Rough surfaces send a share of light back whatever the angle; Lambert's law alone would leave

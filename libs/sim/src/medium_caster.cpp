@@ -21,8 +21,9 @@ PathSpan span_in_rectangle(const Eigen::Vector3d& origin, const Eigen::Vector3d&
       if (std::abs(o) > h) return kNowhere;
       continue;
     }
-    span.begin = std::max(span.begin, (std::copysign(-h, d) - o) / d);
-    span.end = std::min(span.end, (std::copysign(h, d) - o) / d);
+    const double far = std::copysign(h, d);
+    span.begin = std::max(span.begin, (-far - o) / d);
+    span.end = std::min(span.end, (far - o) / d);
   }
   return span;
 }

@@ -2,7 +2,7 @@
 #include "mrpt_terrain/sim/ray_caster.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include "medium_caster.h"
 #include "mover_caster.h"
@@ -94,7 +94,7 @@ void RayCaster::scatter(const Rays& rays, double max_range, std::uint64_t seed,
 
 void RayCaster::Impl::look_down(const TriangleSet& set, const double* x, const double* y,
                                 std::size_t n, std::optional<TerrainPoint>* result) const {
-  // Places on the very edge move inwards by what single precision cannot tell.
+  // Embree may miss the very edge: places there move inwards by what single precision cannot tell.
   const Eigen::Vector2d low = set.min_corner().head<2>(), high = set.max_corner().head<2>();
   const double margin = 1e-6 * (high - low).norm();
   const double top = set.max_corner().z() + 1.0;

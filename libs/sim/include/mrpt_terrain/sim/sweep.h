@@ -14,6 +14,9 @@
 
 namespace mrpt_terrain::sim {
 
+/// Share of light near 900 nm that a dry surface sends back diffusely, typical values, 0 to 1.
+[[nodiscard]] double reflectivity(Material material);
+
 /// A sensor on a robot.
 struct MountedSensor {
   sensors::SensorModel model;  ///< beams, rate, range limits, noise
