@@ -9,15 +9,16 @@ set(terrain_layer_sim "core" "files" "params" "sensors" "embree" "yaml-cpp")
 set(terrain_layer_io "core" "files" "params" "sensors" "mrpt::obs" "mrpt::maps" "mrpt::io" "mrpt::containers" "ZLIB::ZLIB")
 set(terrain_layer_view "core" "files" "mrpt::opengl" "PkgConfig::cairo" "nlohmann_json::nlohmann_json"
   "ZLIB::ZLIB")
-set(terrain_layer_eval "core" "files" "params" "io" "sensors" "sim" "pcl_sample_consensus")
+set(terrain_layer_eval "core" "files" "params" "io" "sensors" "sim")
+set(terrain_layer_peers "core" "eval" "pcl_sample_consensus")
 # Truth and result cannot leak into each other: of core, sim may include the data types only.
 set(terrain_core_headers_of_sim grid_geometry labels param_info points random)
 
-# terrain_library(NAME USES target... [PRIVATE_USES target...])
+# terrain_library(NAME [NOT_INSTALLED] USES target... [PRIVATE_USES target...])
 # Builds libs/NAME from all its sources as mrpt_terrain::NAME. Refuses a dependency that the table
 # above does not allow; libraries of this project are written without namespace.
 function(terrain_library name)
-  cmake_parse_arguments(arg "" "" "USES;PRIVATE_USES" ${ARGN})
+  cmake_parse_arguments(arg "NOT_INSTALLED" "" "USES;PRIVATE_USES" ${ARGN})
   if(NOT DEFINED terrain_layer_${name})
     message(FATAL_ERROR "libs/${name} is not in the table of cmake/layers.cmake")
   endif()
@@ -47,6 +48,9 @@ function(terrain_library name)
   target_link_libraries(mrpt_terrain_${name}
     PUBLIC ${targets_arg_USES}
     PRIVATE ${targets_arg_PRIVATE_USES} $<BUILD_INTERFACE:mrpt_terrain_options>)
+  if(arg_NOT_INSTALLED)
+    return()
+  endif()
   install(TARGETS mrpt_terrain_${name} EXPORT mrpt_terrain_targets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <map>
 
 #include "app_params.h"
 #include "exit_code.h"
@@ -9,21 +8,9 @@
 #include "mrpt_terrain/params/ini.h"
 #include "options.h"
 #include "stop_signal.h"
+#include "verbosity_option.h"
 
 namespace {
-
-const std::map<std::string, Verbosity> kVerbosities = {{"ERROR", Verbosity::kError},
-                                                       {"WARN", Verbosity::kWarn},
-                                                       {"INFO", Verbosity::kInfo},
-                                                       {"DEBUG", Verbosity::kDebug}};
-
-void add_verbosity(CLI::App& command, Verbosity& verbosity) {
-  command.add_option("-v,--verbosity", verbosity, "ERROR, WARN, INFO or DEBUG")
-      ->transform(CLI::CheckedTransformer(kVerbosities, CLI::ignore_case).description(""))
-      ->type_name("LEVEL");
-  command.add_flag_callback(
-      "-q,--quiet", [&verbosity] { verbosity = Verbosity::kError; }, "Print errors only");
-}
 
 void add_process(CLI::App& app, ProcessOptions& options) {
   CLI::App& command =

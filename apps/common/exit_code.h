@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Exit codes of terrain-rawlog; `--help` lists them.
+/// Exit codes of all programs; their `--help` says what they mean there.
 enum ExitCode : int {
   kExitOk = 0,
   kExitUsage = 2,       ///< command line or configuration wrong; nothing was done
