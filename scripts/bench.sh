@@ -17,7 +17,7 @@ TEXT
 main() {
   case "${1:-}" in -h | --help) usage; return ;; esac
   local repetitions="${1:-15}"
-  install_packages
+  install_packages packages.apt
   configure release
   build release core_bench
   local report="$project_folder/build/release/core_bench.json"

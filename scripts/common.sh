@@ -10,9 +10,9 @@ fail() {
   exit 1
 }
 
-# Names of the packages in packages.apt, one a line.
+# listed_packages FILE...: names of the packages in these lists, one a line.
 listed_packages() {
-  sed -e 's/#.*//' -e 's/[[:space:]]*$//' -e '/^$/d' "$project_folder/packages.apt"
+  (cd "$project_folder" && sed -e 's/#.*//' -e 's/[[:space:]]*$//' -e '/^$/d' "$@")
 }
 
 is_installed() {
@@ -23,7 +23,7 @@ missing_packages() {
   local package
   while read -r package; do
     is_installed "$package" || printf '%s\n' "$package"
-  done < <(listed_packages)
+  done < <(listed_packages "$@")
 }
 
 as_root() {
@@ -37,7 +37,8 @@ as_root() {
   fi
 }
 
-# Installs what is missing of packages.apt; asks nothing of the network if nothing is.
+# install_packages FILE...: installs what is missing of these lists; asks nothing of the network if
+# nothing is.
 install_packages() {
   if [[ -n "${MRPT_TERRAIN_SKIP_PACKAGES:-}" ]]; then
     say "MRPT_TERRAIN_SKIP_PACKAGES is set: not looking at packages"
@@ -49,9 +50,9 @@ counterparts of the packages in $project_folder/packages.apt by hand (MRPT 2.5 o
 MRPT_TERRAIN_SKIP_PACKAGES=1 and run this script again."
   fi
   local missing
-  mapfile -t missing < <(missing_packages)
+  mapfile -t missing < <(missing_packages "$@")
   if [[ ${#missing[@]} == 0 ]]; then
-    say "All packages of packages.apt are installed"
+    say "All packages of $* are installed"
     return
   fi
   say "Installing ${missing[*]}"

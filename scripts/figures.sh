@@ -57,7 +57,7 @@ main() {
   case "${1:-}" in -h | --help) usage; return ;; esac
   program="${1:-}"
   if [[ -z "$program" ]]; then
-    install_packages
+    install_packages packages.apt
     configure release
     build release terrain-rawlog
     program="$project_folder/build/release/bin/terrain-rawlog"

@@ -47,7 +47,7 @@ main() {
     # Before a build of minutes, not after it.
     [[ -e "$rawlog" ]] || fail "$rawlog: no such file"
   fi
-  install_packages
+  install_packages packages.apt
   [[ -n "$rawlog" ]] || rawlog="$(sample_rawlog)"
 
   configure release

@@ -6,11 +6,14 @@
 
 usage() {
   cat <<'TEXT'
-usage: scripts/test.sh [--sanitizers]
+usage: scripts/test.sh [--sanitizers] [--paper]
 
 Installs the missing Debian packages of packages.apt, then builds and tests: the core library alone,
 with --sanitizers (or SANITIZERS=1) everything under the address and undefined-behaviour sanitizers,
 and at last everything optimised. Warnings are errors. Ends with CTest's summary.
+
+With --paper the packages of packages-paper.apt are installed too, so that the estimators of PCL are
+built and tested; without them that part is left out, and CMake says so.
 TEXT
 }
 
@@ -26,13 +29,17 @@ test_preset() {
 
 main() {
   local sanitizers="${SANITIZERS:-}"
-  case "${1:-}" in
-    "") ;;
-    --sanitizers) sanitizers=1 ;;
-    -h | --help) usage; return ;;
-    *) usage >&2; fail "unknown option $1" ;;
-  esac
-  install_packages
+  local lists=(packages.apt)
+  while [[ $# != 0 ]]; do
+    case "$1" in
+      --sanitizers) sanitizers=1 ;;
+      --paper) lists+=(packages-paper.apt) ;;
+      -h | --help) usage; return ;;
+      *) usage >&2; fail "unknown option $1" ;;
+    esac
+    shift
+  done
+  install_packages "${lists[@]}"
   test_preset core-only
   [[ -z "$sanitizers" || "$sanitizers" == 0 ]] || test_preset asan
   test_preset ci

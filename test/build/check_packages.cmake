@@ -19,7 +19,7 @@ if(count EQUAL 0 OR NOT unique STREQUAL packages)
   message(FATAL_ERROR "packages.apt: no package, or one listed twice: ${packages}")
 endif()
 
-execute_process(COMMAND bash -c ". \"$0/scripts/common.sh\" && listed_packages" ${SOURCE_FOLDER}
+execute_process(COMMAND bash -c ". \"$0/scripts/common.sh\" && listed_packages packages.apt" ${SOURCE_FOLDER}
   OUTPUT_VARIABLE listed RESULT_VARIABLE status OUTPUT_STRIP_TRAILING_WHITESPACE)
 string(REPLACE "\n" ";" listed "${listed}")
 if(NOT status EQUAL 0 OR NOT listed STREQUAL packages)
