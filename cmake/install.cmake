@@ -40,5 +40,6 @@ install(FILES
   ${PROJECT_BINARY_DIR}/mrpt_terrain-config-version.cmake
   DESTINATION ${package_folder})
 install(EXPORT mrpt_terrain_targets NAMESPACE mrpt_terrain:: DESTINATION ${package_folder})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/params DESTINATION ${CMAKE_INSTALL_DATADIR}/mrpt_terrain)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/params ${PROJECT_SOURCE_DIR}/rawlogs
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/mrpt_terrain)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
