@@ -9,11 +9,12 @@
 
 /// How the wheels of the simulated robot count.
 struct OdometryParams {
-  double rate = 20.0;           ///< readings per second
-  double scale_sigma = 0.005;   ///< relative error of the wheels' size, one number per run
-  double slip = 0.05;           ///< uphill the wheels turn farther by this share of the climb
-  double way_sigma = 0.005;     ///< metres after one metre; grows with the root of the way
-  double turn_sigma = 0.00873;  ///< radians after one metre; grows with the root of the way
+  double rate = 20.0;          ///< readings per second
+  double scale_sigma = 0.005;  ///< relative error of the wheels' size, one number per run
+  double slip = 0.05;          ///< uphill the wheels turn farther by this share of the climb
+  double way_sigma = 0.005;    ///< metres after one metre; grows with the root of the way
+  double turn_sigma =
+      0.008726646259971648;  ///< radians after one metre; grows with the root of the way
 
   template <class Self, class Visitor>
   static void visit_params(Self& self, Visitor&& visit) {
