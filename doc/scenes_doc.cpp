@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <utility>
 
 #include "mrpt_terrain/params/documentation.h"
@@ -50,14 +51,34 @@ that overlap are refused with file, line, key, value and rule, all at once.
 
 )";
 
+// One phrase per shape, in the order of the variant.
+constexpr const char* kMeanings[] = {
+    "Wedge with a drivable top that rises along x from the ground; origin: middle of its lower "
+    "edge",
+    "Cuboid; origin: middle of its bottom",
+    "Long cuboid with a drivable top; origin: its middle",
+    "Steps that rise along x; origin: middle of the lowest edge",
+    "Upright wall along x; origin: its middle",
+    "Thin upright cylinder",
+    "Upright cylinder: trunk, barrel, bollard",
+    "Slab on four legs with free space underneath; origin: its middle",
+    "Deck on two walls, a tunnel along x; origin: its middle",
+    "Hole in the ground; origin: its middle",
+    "Trench along x with sloped walls; origin: its middle",
+    "Heap of cuboid stones of random size and attitude; origin: its middle",
+    "Returns come from a layer over the ground after a random free path; origin: its middle",
+    "Returns come from an ellipsoid that stands on the ground, after a random free path",
+    "Somebody who walks to and fro along x; origin: where the walk begins"};
+static_assert(std::size(kMeanings) == std::variant_size_v<sim::Shape>);
+
 template <std::size_t... kIndex>
 std::vector<params::Section> sections_of_shapes(std::vector<sim::Shape>& shapes,
                                                 std::index_sequence<kIndex...> /*shapes*/) {
   shapes = {sim::Shape(std::in_place_index<kIndex>)...};
   std::vector<params::Section> sections;
-  for (sim::Shape& shape : shapes) {
-    sections.push_back({sim::type_of(shape), "",
-                        std::visit([](auto& form) { return params::fields_of(form); }, shape)});
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    sections.push_back({sim::type_of(shapes[k]), kMeanings[k],
+                        std::visit([](auto& form) { return params::fields_of(form); }, shapes[k])});
   }
   return sections;
 }
@@ -68,7 +89,7 @@ std::string tables() {
   sim::VehicleParams vehicle;
   std::vector<params::Section> sections{
       {"ground", "The ground: a rectangle about (x, y)", params::fields_of(ground)},
-      {"every solid", "", params::fields_of(placement)}};
+      {"every solid", "Place, number and look of any shape", params::fields_of(placement)}};
   std::vector<sim::Shape> shapes;
   for (params::Section& section :
        sections_of_shapes(shapes, std::make_index_sequence<std::variant_size_v<sim::Shape>>())) {

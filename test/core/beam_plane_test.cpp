@@ -171,13 +171,13 @@ TEST(BeamPlane, CellsAreThoseWhereBeamsMeetThePlane) {
   const BeamPlane floor{Eigen::Vector3d::UnitZ(), 0.0};
   const BeamPlane deep{Eigen::Vector3d::UnitZ(), 1.0};
   std::vector<std::int32_t> cells;
-  find_meeting_cells(points, floor, deep, 0.5, geometry, Eigen::Vector3d::Zero(), cells);
+  find_meeting_cells(points, floor, deep, 0.5, geometry, Eigen::Vector3d::Zero(), 1, cells);
   CellIndex cell;
   ASSERT_TRUE(geometry.cell_at(0.8101, 0.0, cell));
   EXPECT_EQ(cells[0], value_of(geometry.id_of(cell)));
   EXPECT_EQ(cells[1], value_of(geometry.id_of(cell)));
   EXPECT_FALSE(geometry.contains(geometry.index_of(CellId{cells[2]}))) << "outside the grid";
-  find_meeting_cells(points, floor, floor, 0.01, geometry, Eigen::Vector3d::Zero(), cells);
+  find_meeting_cells(points, floor, floor, 0.01, geometry, Eigen::Vector3d::Zero(), 1, cells);
   EXPECT_EQ(cells[0], 0) << "too close to the ground";
 }
 

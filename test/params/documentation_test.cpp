@@ -25,9 +25,9 @@ TEST(DocumentationTest, LiteralTable) {
             "| `colour` |  | red | red, dark_green | colour of the shape |\n\n"
             "## [paper]\n\n"
             "What it is drawn on.\n\n"
-            "| key | in the paper | default | permitted | meaning |\n"
-            "|---|---|---|---|---|\n"
-            "| `weight` |  | 80 g/m^2 | [1, 1000] g/m^2 | weight of the paper |\n");
+            "| key | default | permitted | meaning |\n"
+            "|---|---|---|---|\n"
+            "| `weight` | 80 g/m^2 | [1, 1000] g/m^2 | weight of the paper |\n");
 }
 
 TEST(DocumentationTest, BarsInTextsDoNotEndTheCell) {

@@ -138,10 +138,10 @@ struct CellLanes {
 };
 
 MRPT_TERRAIN_WIDE_REGISTERS
-void meet_blocks(const BeamPoints& points, const PlaneLanes& plane, const PlaneLanes& ground,
-                 const CellLanes& grid, std::int32_t* cells) {
+void meet_blocks(const BeamPoints& points, std::size_t stride, const PlaneLanes& plane,
+                 const PlaneLanes& ground, const CellLanes& grid, std::int32_t* cells) {
   const Lanes zero{};
-  for (std::size_t i = 0; i < points.size; i += kLanes) {
+  for (std::size_t i = 0; i < points.size; i += stride * kLanes) {
     PointLanes p;
     load(points, i, p);
     const Lanes e = plane.a * p.x + plane.b * p.y + plane.c * p.z + plane.d;
@@ -266,7 +266,8 @@ void BeamPoints::normalise_beams(std::size_t begin) {
 
 void find_meeting_cells(const BeamPoints& points, const BeamPlane& plane, const BeamPlane& ground,
                         double least_height, const GridGeometry& geometry,
-                        const Eigen::Vector3d& centre, std::vector<std::int32_t>& cells) {
+                        const Eigen::Vector3d& centre, std::size_t stride,
+                        std::vector<std::int32_t>& cells) {
   if (cells.size() < points.x.size()) cells.resize(points.x.size());
   const CellLanes grid{
       static_cast<float>(centre.x() + geometry.half_length() + geometry.cell_size()),
@@ -276,7 +277,7 @@ void find_meeting_cells(const BeamPoints& points, const BeamPlane& plane, const 
       static_cast<float>(geometry.cells_w() + 1),
       geometry.stride(),
       static_cast<float>(least_height)};
-  meet_blocks(points, lanes_of(plane, 1.0), lanes_of(ground, 1.0), grid, cells.data());
+  meet_blocks(points, stride, lanes_of(plane, 1.0), lanes_of(ground, 1.0), grid, cells.data());
 }
 
 BeamPlaneFit fit_beam_plane(const BeamPoints& points, const BeamPlane& start, double range_sigma,

@@ -347,15 +347,19 @@ void gather_candidates(const Estimator& self, const Surface& surface) {
 }
 
 // Lets the candidates count whose beam meets the plane in a cell of the surface and above the
-// ground.
-void select_points(const Estimator& self, const Surface& surface) {
+// ground. Decides only about the blocks that the fit will look at.
+void select_points(const Estimator& self, const Surface& surface, std::size_t stride) {
   BeamPoints& candidates = self.workspace.surface;
   std::vector<std::int32_t>& cells = self.workspace.cells;
   find_meeting_cells(candidates, surface.plane, surface.ground, self.params.least_height,
-                     self.input.grid.geometry, surface.centre, cells);
-  for (std::size_t k = 0; k < candidates.size; ++k) {
-    const std::uint8_t mark = self.workspace.marks[static_cast<std::size_t>(cells[k])];
-    candidates.use[k] = static_cast<float>(mark & kSurface);
+                     self.input.grid.geometry, surface.centre, stride, cells);
+  constexpr std::size_t kBlock = BeamPoints::kPadding;
+  for (std::size_t begin = 0; begin < candidates.size; begin += stride * kBlock) {
+    const std::size_t end = std::min(begin + kBlock, candidates.size);
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint8_t mark = self.workspace.marks[static_cast<std::size_t>(cells[k])];
+      candidates.use[k] = static_cast<float>(mark & kSurface);
+    }
   }
 }
 
@@ -427,7 +431,7 @@ bool fit_surface(const Estimator& self, RandomGenerator& random, BeamPlaneFit& f
     grow_surface(self, surface);
     mark_near(self, reach_of_noise(self, fit.range_sigma));
     gather_candidates(self, surface);
-    select_points(self, surface);
+    select_points(self, surface, kStrides[round]);
     if (round == 0) ground = fit_ground(self, surface.centre, ground, random);
     fit = fit_beam_plane(workspace.surface, fit.plane, fit.range_sigma, self.params.least_sigma,
                          kSteps[round], kStrides[round]);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mrpt_terrain/params/documentation.h"
 
+#include <algorithm>
+
 namespace mrpt_terrain::params {
 namespace {
 
@@ -14,12 +16,22 @@ std::string cell(const std::string& text) {
   return result;
 }
 
-std::string row(const Field& field) {
-  const std::string symbol = field.info.symbol;
+std::string row(const Field& field, bool with_symbols) {
   const std::string unit = field.info.unit;
   const std::string value = text_of(field) + (unit.empty() ? "" : " " + unit);
-  return "| `" + std::string(field.info.key) + "` | " + cell(symbol) + " | " + cell(value) + " | " +
+  const std::string symbol = with_symbols ? " | " + cell(field.info.symbol) : "";
+  return "| `" + std::string(field.info.key) + "`" + symbol + " | " + cell(value) + " | " +
          cell(permitted_text(field)) + " | " + cell(field.info.meaning) + " |\n";
+}
+
+std::string table(const Section& section) {
+  const auto has_symbol = [](const Field& field) { return *field.info.symbol != '\0'; };
+  const bool with_symbols = std::any_of(section.fields.begin(), section.fields.end(), has_symbol);
+  std::string text = with_symbols ? "| key | in the paper | default | permitted | meaning |\n"
+                                    "|---|---|---|---|---|\n"
+                                  : "| key | default | permitted | meaning |\n|---|---|---|---|\n";
+  for (const Field& field : section.fields) text += row(field, with_symbols);
+  return text;
 }
 
 }  // namespace
@@ -28,10 +40,7 @@ std::string markdown_text(const std::vector<Section>& sections) {
   std::string text;
   for (const Section& section : sections) {
     if (!text.empty()) text += "\n";
-    text += "## [" + section.name + "]\n\n" + section.meaning + ".\n\n";
-    text += "| key | in the paper | default | permitted | meaning |\n";
-    text += "|---|---|---|---|---|\n";
-    for (const Field& field : section.fields) text += row(field);
+    text += "## [" + section.name + "]\n\n" + section.meaning + ".\n\n" + table(section);
   }
   return text;
 }

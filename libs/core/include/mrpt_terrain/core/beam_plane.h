@@ -102,10 +102,12 @@ struct BeamPlaneFit {
 /// \param centre of the points, in the frame of the grid
 /// \param ground plane about the same centre; points that meet the plane closer to it than
 /// `least_height`, metres, get cell 0, as do points outside the grid
+/// \param stride only every so many blocks of eight points are looked at, as by fit_beam_plane
 /// \param[out] cells CellId per point, filled up like the arrays of `points`
 void find_meeting_cells(const BeamPoints& points, const BeamPlane& plane, const BeamPlane& ground,
                         double least_height, const GridGeometry& geometry,
-                        const Eigen::Vector3d& centre, std::vector<std::int32_t>& cells);
+                        const Eigen::Vector3d& centre, std::size_t stride,
+                        std::vector<std::int32_t>& cells);
 
 /// Noise along the beam from the median of the absolute residuals of every `stride`-th point,
 /// metres; robust against up to half of them being outliers.

@@ -8,7 +8,8 @@
 
 namespace mrpt_terrain::params {
 
-/// Markdown: a heading and a table for each section.
+/// Markdown: a heading and a table for each section, with a column for symbols of the paper where
+/// one of its keys has one.
 [[nodiscard]] std::string markdown_text(const std::vector<Section>& sections);
 
 /// Markdown tables of a struct with `visit_sections`: a heading per section, and per parameter its

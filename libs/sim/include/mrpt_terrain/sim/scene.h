@@ -112,7 +112,7 @@ struct Ramp {
   static constexpr const char* kType = "ramp";
   double length = 1.2;  ///< of the rise, measured horizontally
   double width = 1.0;
-  double angle = 0.2;  ///< radians
+  double angle = 0.17453292519943295;  ///< radians: 10 degrees
   double platform = 0.0;
   bool way_down = false;  ///< falls behind the platform as it rose
   template <class Self, class Visitor>
