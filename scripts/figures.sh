@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Makes the pictures of README.md and doc/tour.md.
+# Makes the pictures of the documents.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -8,10 +8,11 @@ images="$project_folder/doc/images"
 
 usage() {
   cat <<'TEXT'
-usage: scripts/figures.sh [PROGRAM]
+usage: scripts/figures.sh [FOLDER]
 
-Writes the pictures in doc/images: of the VLP-16 scan that Debian's mrpt-common brings along, and of
-a small made-up world. Builds terrain-rawlog first, or uses PROGRAM if it is given.
+Writes the pictures in doc/images: of the VLP-16 scan that Debian's mrpt-common brings along, of a
+small made-up world, and the plan of a scene. Builds terrain-rawlog and terrain-sim first, or uses
+those in FOLDER if it is given.
 TEXT
 }
 
@@ -55,13 +56,14 @@ picture() {
 
 main() {
   case "${1:-}" in -h | --help) usage; return ;; esac
-  program="${1:-}"
-  if [[ -z "$program" ]]; then
+  local programs="${1:-}"
+  if [[ -z "$programs" ]]; then
     install_packages packages.apt
     configure release
-    build release terrain-rawlog
-    program="$project_folder/build/release/bin/terrain-rawlog"
+    build release terrain-rawlog terrain-sim
+    programs="$project_folder/build/release/bin"
   fi
+  program="$programs/terrain-rawlog"
   work="$(mktemp -d)"
   trap 'rm -rf "$work"' EXIT
   mkdir -p "$images"
@@ -75,6 +77,7 @@ main() {
   made_up_world >"$work/made_up_world.ply"
   "$program" import "$work/made_up_world.ply" --output "$work/made_up_world.rawlog"
   picture made_up_world "$work/made_up_world.rawlog" -c "$project_folder/params/paper.ini"
+  "$programs/terrain-sim" "$project_folder/params/scenes/drive.yaml" --preview "$images/drive_plan.png"
 }
 
 main "$@"

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <CLI/CLI.hpp>
-#include <iostream>
 
 #include "exit_code.h"
 #include "options.h"
-#include "stop_signal.h"
+#include "program.h"
 #include "verbosity_option.h"
 
 namespace {
@@ -84,12 +83,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  install_stop_signals();
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "error: " << error.what() << "\n";
-    return kExitOutput;
-  }
-}
+int main(int argc, char** argv) { return run_program(run, argc, argv); }

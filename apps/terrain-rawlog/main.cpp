@@ -7,7 +7,7 @@
 #include "memory_limit.h"
 #include "mrpt_terrain/params/ini.h"
 #include "options.h"
-#include "stop_signal.h"
+#include "program.h"
 #include "verbosity_option.h"
 
 namespace {
@@ -142,11 +142,5 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   limit_memory();
-  install_stop_signals();
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "error: " << error.what() << "\n";
-    return kExitOutput;
-  }
+  return run_program(run, argc, argv);
 }
