@@ -10,6 +10,7 @@
 #include "options.h"
 #include "paper_tables_text.h"
 #include "report_files.h"
+#include "report_page.h"
 #include "stop_signal.h"
 
 namespace {

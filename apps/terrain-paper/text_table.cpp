@@ -63,8 +63,8 @@ std::string html_escaped(const std::string& text) {
   return escaped;
 }
 
-std::string as_html(const TextTable& table) {
-  std::string html = "<h3>" + html_escaped(table.title) + "</h3>\n<table>\n<tr>";
+std::string as_html(const TextTable& table, const std::string& id) {
+  std::string html = "<h3 id=\"" + id + "\">" + html_escaped(table.title) + "</h3>\n<table>\n<tr>";
   for (const std::string& cell : table.header) html += "<th>" + html_escaped(cell) + "</th>";
   html += "</tr>\n";
   for (const auto& row : table.rows) {

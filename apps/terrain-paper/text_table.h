@@ -16,7 +16,8 @@ struct TextTable {
 [[nodiscard]] std::string as_text(const TextTable& table);
 
 /// An h3, a table and a paragraph; cells that hold a verdict have its name as class.
-[[nodiscard]] std::string as_html(const TextTable& table);
+/// \param id of the h3, for links
+[[nodiscard]] std::string as_html(const TextTable& table, const std::string& id);
 
 /// The text with the characters that mean something in HTML replaced.
 [[nodiscard]] std::string html_escaped(const std::string& text);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // terrain-paper as a user starts it.
+#include <mrpt/system/string_utils.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <thread>
 
 #include "program.h"
@@ -36,6 +39,19 @@ std::size_t lines_with(const std::string& text, const std::string& part) {
     ++count;
   }
   return count;
+}
+
+/// The files that a page holds as data.
+std::vector<std::string> pictures_in(const std::string& page) {
+  const std::string start = "src=\"data:image/png;base64,";
+  std::vector<std::string> pictures;
+  for (std::size_t at = page.find(start); at != std::string::npos; at = page.find(start, at)) {
+    at += start.size();
+    std::vector<std::uint8_t> bytes;
+    if (!mrpt::system::decodeBase64(page.substr(at, page.find('"', at) - at), bytes)) continue;
+    pictures.emplace_back(bytes.begin(), bytes.end());
+  }
+  return pictures;
 }
 
 bool gnuplot_is_there() {
@@ -125,6 +141,9 @@ TEST(TerrainPaper, FiguresAreMadeAndThePageHoldsThem) {
   const ProgramResult result = terrain_paper(folder, kShort);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const std::string page = read_file(folder / "out" / "report.html");
+  const std::vector<std::string> pictures = pictures_in(page);
+  ASSERT_EQ(pictures.size(), 9U);
+  std::size_t picture = 0;
   for (const std::string number : {"06", "07", "08", "09", "10", "11", "12", "13", "14"}) {
     const std::string name = "figure_" + number;
     const std::string svg = read_file(folder / "out" / "figures" / (name + ".svg"));
@@ -132,7 +151,8 @@ TEST(TerrainPaper, FiguresAreMadeAndThePageHoldsThem) {
     const std::string png = read_file(folder / "out" / "figures" / (name + ".png"));
     EXPECT_EQ(png.substr(1, 3), "PNG") << name;
     EXPECT_TRUE(contains(png, "IEND")) << name;
-    EXPECT_TRUE(contains(page, "figures/" + name + ".png")) << name;
+    EXPECT_TRUE(contains(page, "figures/" + name + ".svg")) << name;
+    EXPECT_EQ(pictures[picture++], png) << name;
     EXPECT_TRUE(fs::exists(folder / "out" / "figures" / (name + ".gp"))) << name;
   }
   for (const auto& entry : fs::directory_iterator(folder / "out" / "figures")) {
