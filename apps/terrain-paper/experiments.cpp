@@ -169,7 +169,7 @@ mrpt_terrain::DescriptionParams paper_params(const std::string& data_folder) {
 
 }  // namespace
 
-eval::PlaneEstimators built_in_estimators(const Options& options) {
+eval::PlaneEstimators built_in_estimators([[maybe_unused]] const Options& options) {
   const std::string folder = mrpt_terrain::params::find_data_folder().string();
   eval::PlaneEstimators list;
 #ifdef MRPT_TERRAIN_HAS_PEERS

@@ -124,6 +124,29 @@ TEST(BeamSlope, WallsAcrossTheBeamsReadNinetyDegreesToo) {
   EXPECT_EQ(slope.to_ground.status, FeatureStatus::kTooFewPoints) << "no ground was seen";
 }
 
+// Invariant: where a short piece of one ring is all that is seen of the ground, the angle to the
+// ground is right within its stated uncertainty or is not called right.
+TEST(BeamSlope, GroundSeenInOneRingIsKnownToSayLittle) {
+  int trusted = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    RandomGenerator random(seed);
+    Points points;
+    worlds::add_wall(points, 2.0, -1.0, 1.0, 1.4, 0.02, 0.0, random);
+    for (int k = 0; k < 300; ++k) {
+      const double azimuth = 0.55 + 0.01 * static_cast<double>(seed) / 300.0 * k;
+      points.push_back(static_cast<float>(2.3 * std::cos(azimuth)),
+                       static_cast<float>(2.3 * std::sin(azimuth)), 0.0F);
+    }
+    worlds::add_beam_noise(points, 0.01, random);
+    const SlopeToGround& ground = largest(described(points)).slope.to_ground;
+    if (ground.status != FeatureStatus::kOk) continue;
+    ++trusted;
+    EXPECT_NEAR(ground.angle, kPi / 2, 4.0 * ground.angle_sigma + radians(0.5)) << "seed " << seed;
+  }
+  EXPECT_GT(trusted, 10);
+  EXPECT_LT(trusted, 50);
+}
+
 TEST(BeamSlope, SteepRampsAreNoSpecialCase) {
   for (const double degrees : {70.0, 80.0, 87.0}) {
     RandomGenerator random(13);

@@ -20,6 +20,8 @@ constexpr double kTukeyBias = 0.8924;
 constexpr double kSigmaOfMedian = 1.4826;
 // Reciprocal condition number below which points span no plane.
 constexpr double kLeastCondition = 1e-7;
+// Radians; where points have no noise, the standard deviation of their plane is as good as zero.
+constexpr double kNegligibleTurn = 1e-4;
 
 typedef float Lanes __attribute__((vector_size(kLanes * sizeof(float))));
 typedef std::int32_t IntLanes __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
@@ -298,6 +300,8 @@ BeamPlaneFit fit_beam_plane(const BeamPoints& points, const BeamPlane& start, do
     const Eigen::Matrix<double, 3, 2> turn = basis.block<3, 2>(0, 0);
     fit.normal_covariance = variance_factor(sums, fit.range_sigma) * turn *
                             inverse.topLeftCorner<2, 2>() * turn.transpose();
+    fit.converged = update.head<3>().squaredNorm() <=
+                    std::max(fit.normal_covariance.trace(), kNegligibleTurn * kNegligibleTurn);
     const Eigen::Vector3d normal = fit.plane.normal + update.head<3>();
     const double length = normal.norm();
     fit.plane = {normal / length, (fit.plane.offset + update[3]) / length};

@@ -36,6 +36,8 @@ constexpr double kMeanLimit = 3.0;
 constexpr double kScatterLimit = 4.0;
 // A ground cell is told from the surface if the two lie so many standard deviations apart.
 constexpr double kApart = 6.0;
+// The sensor has to be so many standard deviations of the range noise above the ground.
+constexpr double kAbove = 3.0;
 
 // Bits of the mark of a cell; the frame of the grid never has any.
 constexpr std::uint8_t kSurface = 1;   // belongs to the surface: 1, so that it serves as a weight
@@ -46,7 +48,7 @@ constexpr std::uint8_t kGathered = 8;  // its points are among the candidates
 /// The plane as it is found out step by step, and what is needed to judge cells by it.
 struct Surface {
   Eigen::Vector3d centre;  ///< of the cluster: origin of both planes
-  Eigen::Vector3d origin;  ///< where the scan's first beam started; near enough for whole cells
+  Eigen::Vector3d origin;  ///< Estimator::sensor
   BeamPlane plane;
   double range_sigma = 0.0;
   BeamPlane ground;  ///< about the same centre; z = 0 where no ground was seen
@@ -62,6 +64,11 @@ struct Estimator {
   CellBox near;    ///< where points of the surface may lie
 
   [[nodiscard]] IndexRange slots() const { return input.clusters.slots.row(cluster); }
+  /// Where the first beam of the scan started: near enough for whole cells.
+  [[nodiscard]] Eigen::Vector3d sensor() const {
+    const std::array<float, 3>& first = input.origins.of(0);
+    return {first[0], first[1], first[2]};
+  }
 };
 
 bool contains(const CellBox& box, CellIndex cell) {
@@ -152,13 +159,21 @@ float truncated_cost(const BeamPoints& cloud, std::size_t n, const Plane& plane,
   return cost;
 }
 
+Plane single_precision(const BeamPlane& plane) {
+  const Eigen::Vector3f normal = plane.normal.cast<float>();
+  return {normal.x(), normal.y(), normal.z(), static_cast<float>(plane.offset)};
+}
+
+// The best of random planes, and of a guess if there is one.
 std::optional<BeamPlane> consensus_plane(const BeamPoints& sample, const BeamSlopeParams& params,
+                                         const std::optional<BeamPlane>& guess,
                                          RandomGenerator& random) {
   const std::size_t n = std::min(sample.size, kConsensusSize);
   const PointsView cloud{sample.x.data(), sample.y.data(), sample.z.data(), n};
   const auto cutoff = static_cast<float>(params.seed_distance);
   float best_cost = std::numeric_limits<float>::max();
-  std::optional<BeamPlane> best;
+  std::optional<BeamPlane> best = guess;
+  if (guess) best_cost = truncated_cost(sample, n, single_precision(*guess), cutoff, best_cost);
   for (int k = 0; k < params.hypotheses; ++k) {
     const std::optional<Plane> plane = random_plane(cloud, random);
     if (!plane) continue;
@@ -173,8 +188,9 @@ std::optional<BeamPlane> consensus_plane(const BeamPoints& sample, const BeamSlo
 
 // Sample consensus, then the likely plane.
 BeamPlaneFit fit_from_scratch(const BeamPoints& sample, const BeamSlopeParams& params,
-                              RandomGenerator& random, std::vector<float>& scratch) {
-  const std::optional<BeamPlane> seed = consensus_plane(sample, params, random);
+                              const std::optional<BeamPlane>& guess, RandomGenerator& random,
+                              std::vector<float>& scratch) {
+  const std::optional<BeamPlane> seed = consensus_plane(sample, params, guess, random);
   if (!seed) return {};
   const double sigma = median_range_sigma(sample, *seed, 2, scratch);
   return fit_beam_plane(sample, *seed, sigma, params.least_sigma, kFirstSteps);
@@ -210,15 +226,22 @@ void sample_ground(const Estimator& self, const Eigen::Vector3d& centre) {
 }
 
 // Plane through the ground cells around, normal upwards; starts from the last one if there is one.
+// Else z = 0 stands for election as well: where a single ring is all that is seen of the ground,
+// hardly three of its points make a plane that is better.
 BeamPlaneFit fit_ground(const Estimator& self, const Eigen::Vector3d& centre,
                         const BeamPlaneFit& last, RandomGenerator& random) {
   sample_ground(self, centre);
   const BeamPoints& cells = self.workspace.ground;
   if (cells.size < kLeastGroundCells) return {};
+  const BeamPlane level{Eigen::Vector3d::UnitZ(), centre.z()};
   BeamPlaneFit fit =
       last.ok ? fit_beam_plane(cells, last.plane, last.range_sigma, self.params.least_sigma, 2)
-              : fit_from_scratch(cells, self.params, random, self.workspace.residuals);
+              : fit_from_scratch(cells, self.params, level, random, self.workspace.residuals);
   fit.plane = upright(fit.plane);
+  // A short piece of a ring lies in a plane through the sensor, too, but the ground is below it.
+  const Eigen::Vector3d& normal = fit.plane.normal;
+  const double height = normal.dot(self.sensor() - centre) + fit.plane.offset;
+  if (!(height > kAbove * fit.range_sigma)) fit.ok = false;
   return fit;
 }
 
@@ -405,12 +428,13 @@ void report_plane(const BeamPlaneFit& fit, const Eigen::Vector3d& centre, Slope&
 }
 
 void report_ground(const BeamPlaneFit& fit, const BeamPlaneFit& ground,
-                   const Eigen::Vector3d& centre, SlopeToGround& result) {
-  result.status = ground.ok ? FeatureStatus::kOk : FeatureStatus::kTooFewPoints;
+                   const Eigen::Vector3d& centre, double max_sigma, SlopeToGround& result) {
+  result.status = FeatureStatus::kTooFewPoints;
   if (!ground.ok) return;
   result.angle = angle_between(fit.plane.normal, ground.plane.normal);
   result.angle_sigma =
       std::hypot(angle_sigma(fit, ground.plane.normal), angle_sigma(ground, fit.plane.normal));
+  result.status = result.angle_sigma <= max_sigma ? FeatureStatus::kOk : FeatureStatus::kUncertain;
   result.ground_normal = ground.plane.normal;
   result.ground_offset = ground.plane.offset - ground.plane.normal.dot(centre);
 }
@@ -419,7 +443,7 @@ void report_ground(const BeamPlaneFit& fit, const BeamPlaneFit& ground,
 bool fit_surface(const Estimator& self, RandomGenerator& random, BeamPlaneFit& fit,
                  BeamPlaneFit& ground, Surface& surface, double& explained) {
   BeamSlopeWorkspace& workspace = self.workspace;
-  fit = fit_from_scratch(workspace.sample, self.params, random, workspace.residuals);
+  fit = fit_from_scratch(workspace.sample, self.params, {}, random, workspace.residuals);
   if (!fit.ok) return false;
   ground = fit_ground(self, surface.centre, {}, random);
   for (int round = 0; round < kRounds && fit.ok; ++round) {
@@ -487,8 +511,7 @@ Slope estimate_beam_slope(const BeamSlopeInput& input, std::size_t cluster,
   workspace.marks.resize(static_cast<std::size_t>(input.grid.geometry.array_size()), 0);
   Surface surface;
   surface.centre = centre_of(self);
-  const std::array<float, 3>& first = input.origins.of(0);
-  surface.origin = Eigen::Vector3d(first[0], first[1], first[2]);
+  surface.origin = self.sensor();
   surface.ground.offset = surface.centre.z();
   workspace.surface.resize(0);
   draw_sample(self, points, surface.centre, workspace.sample);
@@ -503,12 +526,12 @@ Slope estimate_beam_slope(const BeamSlopeInput& input, std::size_t cluster,
     return slope;
   }
   report_plane(fit, surface.centre, slope);
-  report_ground(fit, ground, surface.centre, slope.to_ground);
+  report_ground(fit, ground, surface.centre, params.max_angle_sigma, slope.to_ground);
   const double cosine = fit.plane.normal.dot((surface.centre - surface.origin).normalized());
   const double across = fit.range_sigma * std::hypot(cosine, kAcrossBeam);
   const bool planar =
       explained >= params.least_share * static_cast<double>(points) && across <= params.max_scatter;
-  const bool certain = slope.angle_sigma <= params.max_angle_sigma;
+  const bool certain = fit.converged && slope.angle_sigma <= params.max_angle_sigma;
   slope.status = !planar   ? FeatureStatus::kNotPlanar
                  : certain ? FeatureStatus::kOk
                            : FeatureStatus::kUncertain;

@@ -79,6 +79,9 @@ struct BeamPlane {
 /// Result of a fit.
 struct BeamPlaneFit {
   bool ok = false;  ///< false: the points do not span a plane, or none is near the start
+  /// Whether the last step turned the plane by no more than its standard deviation. Where it did
+  /// not, the plane is still on its way and the covariance means nothing.
+  bool converged = false;
   BeamPlane plane;
   double range_sigma = 0.0;  ///< standard deviation along the beam, metres
   std::int32_t inliers = 0;  ///< points that counted

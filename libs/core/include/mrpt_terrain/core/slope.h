@@ -53,7 +53,7 @@ struct SlopeParams {
 
 /// Slope of a cluster against the ground around it; method `beam` only.
 struct SlopeToGround {
-  FeatureStatus status = FeatureStatus::kNotNeeded;  ///< kTooFewPoints: no ground seen around
+  FeatureStatus status = FeatureStatus::kNotNeeded;  ///< kTooFewPoints: too little ground seen
   double angle = 0.0;                                ///< radians, between the two planes
   double angle_sigma = 0.0;                          ///< its standard deviation, radians
   Eigen::Vector3d ground_normal = Eigen::Vector3d::UnitZ();  ///< unit, z >= 0
