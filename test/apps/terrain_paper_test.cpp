@@ -135,6 +135,23 @@ TEST(TerrainPaper, FewerScansForLmedsAreSaid) {
                        "lmeds sees the first 2 of 3 scans only"));
 }
 
+TEST(TerrainPaper, EstimatorsOfPclRunOrTheirAbsenceIsSaid) {
+  const auto folder = fresh_folder();
+  const ProgramResult result = terrain_paper(
+      folder,
+      with(kShort, {"--tables", "4", "--noise", "5", "--pose-jitter", "0", "--no-figures"}));
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(lines_with(result.out, "\nransac "), 3U) << "published values stand there in any case";
+  const std::string estimates = read_file(folder / "out" / "estimates.csv");
+#ifdef MRPT_TERRAIN_HAS_PEERS
+  EXPECT_FALSE(contains(result.err, "built without PCL")) << result.err;
+  EXPECT_EQ(lines_with(estimates, ",ransac,"), 9U);
+#else
+  EXPECT_TRUE(contains(result.err, "built without PCL (packages-paper.apt)")) << result.err;
+  EXPECT_EQ(lines_with(estimates, ",ransac,"), 0U);
+#endif
+}
+
 TEST(TerrainPaper, FiguresAreMadeAndThePageHoldsThem) {
   if (!gnuplot_is_there()) GTEST_SKIP() << "gnuplot is not installed";
   const auto folder = fresh_folder();
