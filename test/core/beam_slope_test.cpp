@@ -138,7 +138,8 @@ TEST(BeamSlope, GroundSeenInOneRingIsKnownToSayLittle) {
                        static_cast<float>(2.3 * std::sin(azimuth)), 0.0F);
     }
     worlds::add_beam_noise(points, 0.01, random);
-    const SlopeToGround& ground = largest(described(points)).slope.to_ground;
+    const Description description = described(points);
+    const SlopeToGround& ground = largest(description).slope.to_ground;
     if (ground.status != FeatureStatus::kOk) continue;
     ++trusted;
     EXPECT_NEAR(ground.angle, kPi / 2, 4.0 * ground.angle_sigma + radians(0.5)) << "seed " << seed;
@@ -209,7 +210,8 @@ TEST(BeamSlope, OriginsPerPointAreUsed) {
   Description description;
   const std::array<std::array<float, 3>, 2> both{worlds::kLidarOrigin, worlds::kLidarOrigin};
   describe({points.view(), {both.data(), origin_of.data()}}, beam_params(), workspace, description);
-  EXPECT_EQ(largest(description).slope.angle, largest(described(points)).slope.angle);
+  const Description without_list = described(points);
+  EXPECT_EQ(largest(description).slope.angle, largest(without_list).slope.angle);
   describe({points.view(), {origins.data(), origin_of.data()}}, beam_params(), workspace,
            description);
   EXPECT_NEAR(largest(description).slope.angle, 0.2, 0.01);

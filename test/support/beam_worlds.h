@@ -57,6 +57,7 @@ inline constexpr Rect kPaperRamp{1.25, 2.45, -0.5, 0.5};
 }
 
 /// The cluster with the most points.
+const ClusterDescription& largest(Description&&) = delete;  // the result would outlive its owner
 [[nodiscard]] inline const ClusterDescription& largest(const Description& description) {
   const ClusterDescription* best = &description.things.front();
   for (const ClusterDescription& thing : description.things) {
