@@ -90,16 +90,16 @@ void add_blocks(const BeamPoints& points, std::size_t stride, const PlaneLanes& 
   for (std::size_t i = 0; i < points.size; i += stride * kLanes) {
     PointLanes p;
     load(points, i, p);
-    Lanes use;
-    load(points.use, i, use);
+    Lanes count;
+    load(points.count, i, count);
     const Lanes e = plane.a * p.x + plane.b * p.y + plane.c * p.z + plane.d;
     const Lanes cosine = plane.a * p.dx + plane.b * p.dy + plane.c * p.dz;
     const Lanes inverse = one / (cosine * cosine + kAcrossSquared);
-    const Lanes square = e * e * inverse;  // of the range residual
+    const Lanes square = e * e * inverse * count;  // of the range residual of a single point
     const Lanes t = square * plane.square_per_cutoff;
-    const Lanes inside = (t < one) & (use > zero) ? one - t : zero;
+    const Lanes inside = (t < one) & (count > zero) ? one - t : zero;
     const Lanes tukey = inside * inside;
-    const Lanes weight = tukey * inverse;
+    const Lanes weight = tukey * inverse * count;
     const Lanes along = cosine * e * inverse;
     const Lanes qx = p.x - p.dx * along;
     const Lanes qy = p.y - p.dy * along;
@@ -255,10 +255,10 @@ void BeamPoints::resize(std::size_t n) {
   size = n;
   const std::size_t padded = (n + kPadding - 1) / kPadding * kPadding;
   if (padded > x.size()) {
-    for (auto* array : {&x, &y, &z, &dx, &dy, &dz, &use}) array->resize(padded);
+    for (auto* array : {&x, &y, &z, &dx, &dy, &dz, &count}) array->resize(padded);
   }
-  std::fill(use.begin() + static_cast<std::ptrdiff_t>(n),
-            use.begin() + static_cast<std::ptrdiff_t>(padded), 0.0F);
+  std::fill(count.begin() + static_cast<std::ptrdiff_t>(n),
+            count.begin() + static_cast<std::ptrdiff_t>(padded), 0.0F);
 }
 
 void BeamPoints::normalise_beams(std::size_t begin) {
@@ -319,7 +319,7 @@ double median_range_sigma(const BeamPoints& points, const BeamPlane& plane, std:
     const float e = normal.dot(Eigen::Vector3f(points.x[i], points.y[i], points.z[i])) +
                     static_cast<float>(plane.offset);
     const float cosine = normal.dot(Eigen::Vector3f(points.dx[i], points.dy[i], points.dz[i]));
-    scratch.push_back(e * e / (cosine * cosine + kAcrossSquared));
+    scratch.push_back(points.count[i] * e * e / (cosine * cosine + kAcrossSquared));
   }
   if (scratch.empty()) return 0.0;
   const auto middle = scratch.begin() + static_cast<std::ptrdiff_t>(scratch.size() / 2);

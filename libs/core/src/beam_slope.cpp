@@ -24,6 +24,9 @@ constexpr std::size_t kCostBlock = 32;
 constexpr std::size_t kGroundSample = 512;
 constexpr std::size_t kLeastPoints = 8;
 constexpr std::size_t kLeastGroundCells = 16;
+// The mean of a cell of ground counts as no more points than this: errors of rings and the
+// unevenness of the ground do not average out.
+constexpr float kMostCount = 16.0F;
 constexpr int kFirstSteps = 3;
 // The surface is marked and fitted twice, because the first plane knows only part of it; the first
 // time a part of the points will do.
@@ -220,6 +223,7 @@ void sample_ground(const Estimator& self, const Eigen::Vector3d& centre) {
     const MomentSums& sums = self.input.grid.sums[static_cast<std::size_t>(found[k])];
     const Eigen::Vector3d mean = Eigen::Vector3d(sums.x, sums.y, sums.z) / sums.n;
     cells.set(place, mean.cast<float>(), self.input.origins.of(0), centre.cast<float>());
+    cells.count[place] = std::min(static_cast<float>(sums.n), kMostCount);
     place = (place + step) % cells.size;
   }
   cells.normalise_beams();
@@ -381,7 +385,7 @@ void select_points(const Estimator& self, const Surface& surface, std::size_t st
     const std::size_t end = std::min(begin + kBlock, candidates.size);
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint8_t mark = self.workspace.marks[static_cast<std::size_t>(cells[k])];
-      candidates.use[k] = static_cast<float>(mark & kSurface);
+      candidates.count[k] = static_cast<float>(mark & kSurface);
     }
   }
 }

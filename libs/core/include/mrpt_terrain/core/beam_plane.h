@@ -41,7 +41,7 @@ struct BeamPoints {
   std::size_t size = 0;
   std::vector<float> x, y, z;     ///< metres
   std::vector<float> dx, dy, dz;  ///< unit, from the sensor to the point
-  std::vector<float> use;         ///< 1: the point counts, 0: it does not
+  std::vector<float> count;       ///< measured points that this one is the mean of; 0: left out
 
   /// Changes the number of points; new ones mean nothing until `set`.
   void resize(std::size_t n);
@@ -56,7 +56,7 @@ struct BeamPoints {
     dx[k] = point.x() - origin[0];
     dy[k] = point.y() - origin[1];
     dz[k] = point.z() - origin[2];
-    use[k] = 1.0F;
+    count[k] = 1.0F;
   }
 
   /// Gives the beams of the points from number `begin` on unit length.
