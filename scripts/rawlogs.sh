@@ -32,11 +32,17 @@ sums_of() {
     LC_ALL=C sort --zero-terminated | xargs --null sha256sum)
 }
 
+# temporary_folder NAME: makes a folder that goes when the script ends; the variable NAME has its path.
+temporary_folder() {
+  local -n path="$1"
+  path="$(mktemp --directory)"
+  # shellcheck disable=SC2064  # the folder of now
+  trap "rm -rf '$path'" EXIT
+}
+
 check() {
   local program="$1" folder
-  folder="$(mktemp --directory)"
-  # shellcheck disable=SC2064  # the folder of now
-  trap "rm -rf '$folder'" EXIT
+  temporary_folder folder
   make_all "$program" "$folder"
   if ! diff <(grep -v '^#' "$manifest") <(sums_of "$folder"); then
     fail "the rawlogs (<) and what terrain-sim makes now (>) differ"
@@ -47,9 +53,11 @@ check() {
 }
 
 remake() {
-  local program="$1" folder="$project_folder/rawlogs" commands sums
+  local program="$1" folder="$project_folder/rawlogs" made commands sums
+  temporary_folder made
+  make_all "$program" "$made"
   find "$folder" -mindepth 1 ! -name manifest.txt ! -name README.md -delete
-  make_all "$program" "$folder"
+  cp -r "$made/." "$folder"
   commands="$(grep '^#' "$manifest")"
   sums="$(sums_of "$folder")"
   printf '%s\n' "$commands" "$sums" >"$manifest"
@@ -73,6 +81,7 @@ main() {
     build release terrain-sim
     program="$project_folder/build/release/bin/terrain-sim"
   fi
+  program="$(realpath --canonicalize-existing "$program")"
   "$action" "$program"
 }
 

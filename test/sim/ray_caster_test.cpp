@@ -307,6 +307,34 @@ TEST(RayCaster, TerrainOfManyPlacesIsThatOfEachPlace) {
   }
 }
 
+// The foot of a ramp, a regular place after the other: whichever patch comes first in the mesh is
+// found in all of them, on every processor.
+TEST(RayCaster, OnAnEdgeTheFirstPatchOfTheMeshIsFound) {
+  for (const bool ramp_first : {false, true}) {
+    World world;
+    const auto add = [&](double x, double z, double rise, std::int32_t solid) {
+      worlds::add_patch(world.mesh, {x, -4, z}, {4, 0, rise}, {0, 8, 0}, solid,
+                        SurfaceKind::kDrivable);
+    };
+    if (ramp_first) add(0, 0, 1, 1);
+    add(-4, 0, 0, 0);
+    if (!ramp_first) add(0, 0, 1, 1);
+    const RayCaster caster(world);
+    std::vector<double> x, y;
+    for (int k = -63; k < 64; ++k) {
+      x.push_back(0.0);
+      y.push_back(k / 16.0);
+    }
+    std::vector<std::optional<TerrainPoint>> terrain;
+    caster.terrain_under(x, y, terrain);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      ASSERT_TRUE(terrain[k]) << y[k];
+      EXPECT_NEAR(terrain[k]->height, 0.0, 1e-12);
+      EXPECT_EQ(terrain[k]->solid, ramp_first ? 1 : 0) << y[k];
+    }
+  }
+}
+
 // Along the vertical wall between two levels, where no triangle of the terrain lies across.
 TEST(RayCaster, TerrainIsWholeAlongVerticalWalls) {
   RandomGenerator random(23);

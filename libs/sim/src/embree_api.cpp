@@ -39,7 +39,12 @@ EmbreeScene::EmbreeScene(const std::vector<std::array<float, 3>>& vertices,
                          const std::vector<std::array<std::uint32_t, 3>>& triangles)
     : scene_(rtcNewScene(device())) {
   if (scene_ == nullptr) fail(device(), "no scene");
-  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+#if RTC_VERSION_MAJOR >= 4
+  constexpr auto kFilter = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+#else
+  constexpr auto kFilter = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+#endif
+  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST | kFilter);
   rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
   if (!triangles.empty()) {
     const RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);

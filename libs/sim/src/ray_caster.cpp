@@ -135,7 +135,7 @@ void RayCaster::Impl::look_down(const TriangleSet& set, const double* x, const d
     block.max_range[k] = reach;
   }
   BlockHits found;
-  set.cast(block, found);
+  set.cast_at_edges(block, found);
   for (std::size_t k = 0; k < n; ++k) {
     result[k].reset();
     if (found.triangle[k] == kNoTriangle) continue;
@@ -189,13 +189,13 @@ void RayCaster::free_heights_over(const std::vector<double>& x, const std::vecto
   for (std::size_t first = 0; first < x.size(); first += kPacket) {
     const std::size_t n = std::min(kPacket, x.size() - first);
     RayBlock block = block_above(&x[first], &y[first], &z[first], n, Eigen::Vector3d::UnitZ());
-    impl_->all.cast(block, found);
+    impl_->all.cast_at_edges(block, found);
     for (std::size_t k = 0; k < n; ++k) {
       const bool inside = impl_->leaves_solid(found.triangle[k], Eigen::Vector3d::UnitZ());
       result[first + k] = inside ? 0.0 : found.range[k] + kAboveTerrain;
     }
     block = block_above(&x[first], &y[first], &z[first], n, kOblique);
-    impl_->all.cast(block, found);
+    impl_->all.cast_at_edges(block, found);
     for (std::size_t k = 0; k < n; ++k) {
       if (impl_->leaves_solid(found.triangle[k], kOblique)) result[first + k] = 0.0;
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace mrpt_terrain::sim {
 namespace {
@@ -73,28 +74,33 @@ void TriangleSet::load(const RayBlock& rays, std::size_t k, RayPacket& packet) c
   packet.ray.flags[k] = 0;
 }
 
-void TriangleSet::resolve(const RayBlock& rays, std::size_t k, const RayPacket& packet,
-                          BlockHits& hits) const {
-  const std::uint32_t triangle = triangle_[packet.hit.primID[k]];
-  const Plane& plane = planes_[triangle];
+double TriangleSet::range_of(const RayBlock& rays, std::size_t k, const SingleHit& hit) const {
+  const Plane& plane = planes_[triangle_[hit.primitive]];
   const double approach = plane.nx * rays.dx[k] + plane.ny * rays.dy[k] + plane.nz * rays.dz[k];
   const double room = plane.offset - (plane.nx * (rays.ox[k] - centre_.x()) +
                                       plane.ny * (rays.oy[k] - centre_.y()) +
                                       plane.nz * (rays.oz[k] - centre_.z()));
-  const double single = static_cast<double>(packet.ray.tfar[k]);
-  double range = room / approach;
+  const auto single = static_cast<double>(hit.range);
+  const double range = room / approach;
   // Almost along the plane the quotient says nothing.
-  if (!(std::abs(range - single) <= 0.01 * std::max(1.0, single))) range = single;
-  range = std::max(range, 0.0);
+  const bool agrees = std::abs(range - single) <= 0.01 * std::max(1.0, single);
+  return std::max(agrees ? range : single, 0.0);
+}
+
+void TriangleSet::put(const RayBlock& rays, std::size_t k, const SingleHit& hit,
+                      BlockHits& hits) const {
+  const double range = range_of(rays, k, hit);
   if (range > rays.max_range[k]) return;
+  const std::uint32_t triangle = triangle_[hit.primitive];
+  const Plane& plane = planes_[triangle];
+  const double approach = plane.nx * rays.dx[k] + plane.ny * rays.dy[k] + plane.nz * rays.dz[k];
   hits.range[k] = range;
   hits.triangle[k] = triangle;
   hits.cos_incidence[k] = std::min(std::abs(approach), 1.0);
 }
 
-void TriangleSet::cast(const RayBlock& rays, BlockHits& hits) const {
-  ValidMask valid;
-  RayPacket packet;
+void TriangleSet::load(const RayBlock& rays, ValidMask& valid, RayPacket& packet,
+                       BlockHits& hits) const {
   for (std::size_t k = 0; k < kPacket; ++k) {
     const bool castable =
         k < rays.size && rays.max_range[k] > 0.0 &&
@@ -110,11 +116,39 @@ void TriangleSet::cast(const RayBlock& rays, BlockHits& hits) const {
       blank(k, packet);
     }
   }
+}
+
+void TriangleSet::cast(const RayBlock& rays, BlockHits& hits) const {
+  ValidMask valid;
+  RayPacket packet;
+  load(rays, valid, packet, hits);
   scene_->intersect(valid, packet);
   for (std::size_t k = 0; k < rays.size; ++k) {
     if (valid.lanes[k] != 0 && packet.hit.geomID[k] != kNoTriangle) {
-      resolve(rays, k, packet, hits);
+      put(rays, k, {packet.hit.primID[k], packet.ray.tfar[k]}, hits);
     }
+  }
+}
+
+void TriangleSet::cast_at_edges(const RayBlock& rays, BlockHits& hits) const {
+  constexpr double kStepsPerMetre = 1e6;
+  ValidMask valid;
+  RayPacket packet;
+  load(rays, valid, packet, hits);
+  // Whole steps make an order of all triangles, so that it does not matter who comes first.
+  std::array<double, kPacket> least_steps;
+  std::array<SingleHit, kPacket> best;
+  least_steps.fill(kInfinity);
+  best.fill({kNoTriangle, 0.0F});
+  scene_->for_all_hits(valid, packet, [&](std::size_t k, std::uint32_t primitive, float range) {
+    const SingleHit hit{primitive, range};
+    const double steps = std::round(range_of(rays, k, hit) * kStepsPerMetre);
+    if (std::tie(steps, primitive) >= std::tie(least_steps[k], best[k].primitive)) return;
+    least_steps[k] = steps;
+    best[k] = hit;
+  });
+  for (std::size_t k = 0; k < rays.size; ++k) {
+    if (best[k].primitive != kNoTriangle) put(rays, k, best[k], hits);
   }
 }
 

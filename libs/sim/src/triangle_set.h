@@ -51,8 +51,13 @@ class TriangleSet {
   TriangleSet(const Mesh& mesh, Part part);
 
   /// First hits of the rays; those whose numbers are not finite or whose direction is zero meet
-  /// nothing.
+  /// nothing. On an edge any of its triangles is found.
   void cast(const RayBlock& rays, BlockHits& hits) const;
+
+  /// The same, slower, and on edges without chance: of triangles at the same range to the
+  /// micrometre the one that comes first in the mesh. For regular places in worlds of round
+  /// numbers, many of which lie on edges.
+  void cast_at_edges(const RayBlock& rays, BlockHits& hits) const;
 
   /// Unit normal of a triangle of the mesh that belongs to this set.
   [[nodiscard]] Eigen::Vector3d normal(std::uint32_t triangle) const;
@@ -65,8 +70,17 @@ class TriangleSet {
   struct Plane {
     double nx, ny, nz, offset;
   };
+  /// What Embree found out about one ray.
+  struct SingleHit {
+    std::uint32_t primitive;
+    float range;
+  };
+  /// Puts the castable rays into a packet and clears the hits.
+  void load(const RayBlock& rays, ValidMask& valid, RayPacket& packet, BlockHits& hits) const;
   void load(const RayBlock& rays, std::size_t k, RayPacket& packet) const;
-  void resolve(const RayBlock& rays, std::size_t k, const RayPacket& packet, BlockHits& hits) const;
+  /// Range in double precision of what ray k met.
+  [[nodiscard]] double range_of(const RayBlock& rays, std::size_t k, const SingleHit& hit) const;
+  void put(const RayBlock& rays, std::size_t k, const SingleHit& hit, BlockHits& hits) const;
   void measure(const Mesh& mesh, const std::vector<std::uint32_t>& members);
 
   Eigen::Vector3d min_corner_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
