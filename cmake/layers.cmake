@@ -9,16 +9,20 @@ set(terrain_layer_sim "core" "files" "params" "sensors" "embree" "yaml-cpp")
 set(terrain_layer_io "core" "files" "params" "sensors" "mrpt::obs" "mrpt::maps" "mrpt::io" "mrpt::containers" "ZLIB::ZLIB")
 set(terrain_layer_view "core" "files" "mrpt::opengl" "PkgConfig::cairo" "nlohmann_json::nlohmann_json"
   "ZLIB::ZLIB")
+set(terrain_layer_octree "octomap")
+# `view` draws and writes descriptions for the map as for terrain-rawlog.
+set(terrain_layer_map "core" "files" "io" "octomap" "octree" "params" "sensors" "view" "mrpt::maps" "mrpt::opengl"
+  "ZLIB::ZLIB")
 set(terrain_layer_eval "core" "files" "params" "io" "sensors" "sim")
 set(terrain_layer_peers "core" "eval" "pcl_sample_consensus")
 # Truth and result cannot leak into each other: of core, sim may include the data types only.
 set(terrain_core_headers_of_sim grid_geometry labels param_info points random)
 
-# terrain_library(NAME [NOT_INSTALLED] USES target... [PRIVATE_USES target...])
+# terrain_library(NAME [SHARED] [NOT_INSTALLED] USES target... [PRIVATE_USES target...])
 # Builds libs/NAME from all its sources as mrpt_terrain::NAME. Refuses a dependency that the table
 # above does not allow; libraries of this project are written without namespace.
 function(terrain_library name)
-  cmake_parse_arguments(arg "NOT_INSTALLED" "" "USES;PRIVATE_USES" ${ARGN})
+  cmake_parse_arguments(arg "SHARED;NOT_INSTALLED" "" "USES;PRIVATE_USES" ${ARGN})
   if(NOT DEFINED terrain_layer_${name})
     message(FATAL_ERROR "libs/${name} is not in the table of cmake/layers.cmake")
   endif()
@@ -29,7 +33,11 @@ function(terrain_library name)
     endif()
   endforeach()
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/*.cpp)
-  add_library(mrpt_terrain_${name} STATIC ${sources})
+  set(kind STATIC)
+  if(arg_SHARED)
+    set(kind SHARED)
+  endif()
+  add_library(mrpt_terrain_${name} ${kind} ${sources})
   add_library(mrpt_terrain::${name} ALIAS mrpt_terrain_${name})
   set_target_properties(mrpt_terrain_${name} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(mrpt_terrain_${name} PUBLIC

@@ -131,6 +131,18 @@ Raster<float> height_raster(const ElevationGrid& grid, int width, int height) {
   return raster;
 }
 
+Raster<Slot> slot_raster(const ElevationGrid& grid, int width, int height,
+                         const std::function<bool(std::size_t a, std::size_t b)>& less) {
+  Raster<Slot> raster(width, height);
+  std::fill(raster.values.begin(), raster.values.end(), kUnobserved);
+  for_each_cell_of_pixels(grid, raster, [&](Slot& pixel, std::size_t slot) {
+    if (pixel == kUnobserved || less(static_cast<std::size_t>(pixel), slot)) {
+      pixel = static_cast<Slot>(slot);
+    }
+  });
+  return raster;
+}
+
 HeightRange robust_range(const ElevationGrid& grid, double share) {
   HeightRange range;
   if (grid.h_mean.empty()) return range;

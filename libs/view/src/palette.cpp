@@ -22,8 +22,21 @@ constexpr std::array<Rgb, 11> kHeightColours{{{56, 31, 89},
                                               {195, 225, 83},
                                               {243, 230, 70}}};
 
+constexpr std::array<Rgb, 3> kCostColours{{{176, 213, 160}, {248, 225, 110}, {222, 105, 30}}};
+
 std::uint8_t mix(std::uint8_t a, std::uint8_t b, double share_of_b) {
   return static_cast<std::uint8_t>(std::lround(a + (b - a) * share_of_b));
+}
+
+/// The colour at a share, 0 to 1, of the way through a list of colours.
+template <std::size_t N>
+Rgb between(const std::array<Rgb, N>& colours, double share) {
+  const double place = std::clamp(share, 0.0, 1.0) * (N - 1);
+  const auto k = std::min(static_cast<std::size_t>(place), N - 2);
+  const double rest = place - static_cast<double>(k);
+  const Rgb a = colours[k];
+  const Rgb b = colours[k + 1];
+  return {mix(a.r, b.r, rest), mix(a.g, b.g, rest), mix(a.b, b.b, rest)};
 }
 
 }  // namespace
@@ -61,13 +74,8 @@ Rgb colour_of(TerrainClass terrain_class, Support support) {
   return terrain_class == TerrainClass::kNone ? colour_of(support) : colour_of(terrain_class);
 }
 
-Rgb height_colour(double t) {
-  const double place = std::clamp(t, 0.0, 1.0) * (kHeightColours.size() - 1);
-  const auto k = std::min(static_cast<std::size_t>(place), kHeightColours.size() - 2);
-  const double share = place - static_cast<double>(k);
-  const Rgb a = kHeightColours[k];
-  const Rgb b = kHeightColours[k + 1];
-  return {mix(a.r, b.r, share), mix(a.g, b.g, share), mix(a.b, b.b, share)};
-}
+Rgb height_colour(double t) { return between(kHeightColours, t); }
+
+Rgb cost_colour(double cost) { return between(kCostColours, cost); }
 
 }  // namespace mrpt_terrain::view

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "mrpt_terrain/core/describe.h"
@@ -33,6 +34,12 @@ enum class CellKind : std::uint8_t {
 /// Mean heights of the cells the same way, metres; NaN where no cell of the pixel is observed, the
 /// mean where several share it.
 [[nodiscard]] Raster<float> height_raster(const ElevationGrid& grid, int width, int height);
+
+/// Slots the same way: kUnobserved where no cell of the pixel is observed, the greatest by `less`
+/// where several share it.
+[[nodiscard]] Raster<Slot> slot_raster(
+    const ElevationGrid& grid, int width, int height,
+    const std::function<bool(std::size_t a, std::size_t b)>& less);
 
 /// Heights that a colour scale spans, metres.
 struct HeightRange {

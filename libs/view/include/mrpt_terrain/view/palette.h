@@ -40,6 +40,12 @@ inline constexpr Rgb kUnobservedColour{255, 255, 255};
 /// Colour of a point or cell: that of its class if it has one, else that of its support.
 [[nodiscard]] Rgb colour_of(TerrainClass terrain_class, Support support);
 
+/// Cells that must not be driven on.
+inline constexpr Rgb kLethalColour{122, 20, 30};
+/// Colour of a cost: from pale green (0) over yellow to orange (1).
+/// \param cost values outside [0, 1] are clamped
+[[nodiscard]] Rgb cost_colour(double cost);
+
 /// Colour of a height. Perceptually uniform: equal steps look equally large, from dark violet (low)
 /// over blue and green to bright yellow (high), and lightness rises all the way.
 /// \param t 0 (lowest) to 1 (highest); values outside are clamped

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "mrpt_terrain/core/costs.h"
+#include "mrpt_terrain/core/describe.h"
+#include "mrpt_terrain/core/points.h"
+
+namespace mrpt_terrain {
+
+/// Whether a map knows something about a place.
+enum class PlaceStatus : std::uint8_t {
+  kKnown,    ///< something was seen there
+  kUnknown,  ///< within the map, but never seen
+  kOutside,  ///< beyond the edges of the map
+};
+
+/// What a map knows about one cell. Heights are metres in the map frame and, as the rest, mean
+/// nothing unless the status is kKnown.
+struct CellView {
+  PlaceStatus status = PlaceStatus::kOutside;
+  double height = 0.0;  ///< mean of its points
+  double lowest = 0.0;
+  double highest = 0.0;
+  std::int32_t points = 0;
+  Support support = Support::kUnknown;
+  TerrainClass terrain_class = TerrainClass::kNone;  ///< of its cluster
+  std::int32_t cluster = kNoCluster;                 ///< index into `TerrainSnapshot::clusters`
+};
+
+/// Axis-parallel rectangle in the map frame, metres.
+struct MapBox {
+  Position2 min, max;
+};
+
+/// One thing in the terrain as the map knows it.
+struct ClusterView {
+  ClusterDescription description;  ///< features and class; positions in the window's frame
+  /// The same from scan to scan as long as the thing overlaps its place of before; never reused.
+  std::uint64_t identity = 0;
+  /// Share of the cluster's points in [0, 1] that is enough for its features: n / (n + 30).
+  double confidence = 0.0;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< mean of its points, map frame, metres
+  MapBox box;                                        ///< about its cells, map frame
+};
+
+/// What a map knew after one insertion. It never changes; whoever holds it may read it while the
+/// map goes on.
+///
+/// The description lies in the frame of a *window*: with `fusion = scan` that is the robot's frame
+/// at the time of the scan.
+class TerrainSnapshot {
+ public:
+  std::uint64_t revision = 0;  ///< number of insertions that the map has taken; 0: empty
+  double stamp = 0.0;          ///< of the last scan, seconds since the Unix epoch; NaN: unknown
+  Eigen::Isometry3d T_map_robot = Eigen::Isometry3d::Identity();  ///< at the last scan
+  Eigen::Isometry3d T_map_window = Eigen::Isometry3d::Identity();
+  Description description;  ///< of the window
+  Points points;            ///< those of the last scan, window frame
+  /// Origins of its rays, window frame, and per point its origin (empty: all the first one).
+  std::vector<std::array<float, 3>> ray_origins;
+  std::vector<std::uint32_t> origin_of;
+  std::vector<ClusterView> clusters;  ///< one per `description.things`, same numbers
+  CellCosts costs;                    ///< per slot of the description's grid
+  RobotParams robot;                  ///< that the costs are for
+
+  /// The cell that holds (x, y) of the map. Where the window is tilted, the place is the one of its
+  /// plane z = 0 that lies above or below.
+  [[nodiscard]] CellView cell_at(double x, double y) const;
+
+  /// Cost of being at (x, y) of the map, looking along `heading` (radians from the map's x).
+  [[nodiscard]] Cost cost_at(double x, double y, double heading) const;
+  /// The same for the worst heading.
+  [[nodiscard]] Cost cost_at(double x, double y) const;
+
+  /// Indices of the clusters whose boxes touch a box, ascending.
+  [[nodiscard]] std::vector<std::size_t> clusters_in(const MapBox& box) const;
+
+  /// Slot of the cell over (x, y) of the map, kUnobserved where nothing was seen.
+  /// \param[out] status
+  [[nodiscard]] Slot slot_at(double x, double y, PlaceStatus& status) const;
+
+  /// Fills `clusters` from `description`. Things that overlap one of `before` keep its identity.
+  /// \param[in,out] next_identity the one to be given out next
+  void name_clusters(const TerrainSnapshot* before, std::uint64_t& next_identity);
+};
+
+using TerrainSnapshotPtr = std::shared_ptr<const TerrainSnapshot>;
+
+}  // namespace mrpt_terrain

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/map/map_params.h"
+
+#include <mrpt/config/CConfigFile.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "mrpt_terrain/params/document.h"
+#include "mrpt_terrain/params/ini.h"
+#include "mrpt_terrain/params/parameter_error.h"
+
+namespace mrpt_terrain {
+namespace {
+
+using params::Field;
+using params::Section;
+
+constexpr double kMostCells = 1e8;
+
+/// Keys of `_creationOpts` that MRPT reads by itself (mrpt::maps::TMapGenericParams).
+struct GenericParams {
+  bool save_as_3d_object = true;
+  bool likelihood = true;
+  bool insertion = true;
+
+  template <class Self, class Visitor>
+  static void visit_params(Self& self, Visitor&& visit) {
+    visit(self.save_as_3d_object,
+          ParamInfo{"enableSaveAs3DObject", "", "", 0, 0, "shows the map in 3D views"});
+    visit(self.likelihood,
+          ParamInfo{"enableObservationLikelihood", "", "", 0, 0, "has a say in localisation"});
+    visit(self.insertion,
+          ParamInfo{"enableObservationInsertion", "", "", 0, 0, "takes observations"});
+  }
+};
+
+template <class Params>
+void append_fields(Params& params, Section& section) {
+  std::vector<Field> fields = params::fields_of(params);
+  section.fields.insert(section.fields.end(), fields.begin(), fields.end());
+}
+
+template <class... Params>
+Section joined_section(const std::string& name, const char* meaning, Params&... parts) {
+  Section section{name, meaning, {}};
+  (append_fields(parts, section), ...);
+  return section;
+}
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool starts_with(const std::string& text, const std::string& beginning) {
+  return lower_case(text.substr(0, beginning.size())) == lower_case(beginning);
+}
+
+/// Beginning of messages: the file, if the configuration is one.
+std::string source_of(const mrpt::config::CConfigFileBase& config) {
+  const auto* file = dynamic_cast<const mrpt::config::CConfigFile*>(&config);
+  return file == nullptr ? "map definition" : file->getAssociatedFile();
+}
+
+/// The sections of one map, under the names that `map_sections` gives them.
+params::Document document_of(const mrpt::config::CConfigFileBase& config,
+                             const std::string& prefix) {
+  params::Document document = params::read_ini(config, source_of(config));
+  std::vector<params::SectionText> own;
+  for (params::SectionText& section : document.sections) {
+    if (!starts_with(section.name, prefix + "_")) continue;
+    if (lower_case(section.name) == lower_case(prefix + "_insertionOpts")) {
+      section.name = prefix + "_insertOpts";
+    }
+    own.push_back(std::move(section));
+  }
+  document.sections = std::move(own);
+  return document;
+}
+
+}  // namespace
+
+std::vector<Section> map_sections(const std::string& prefix, MapParams& params) {
+  DescriptionParams& description = params.description;
+  std::vector<Section> sections{
+      joined_section(prefix + "_creationOpts", "The map itself", params.creation, description.grid),
+      joined_section(prefix + "_insertOpts", "How observations enter", params.input, params.octree),
+      joined_section(prefix + "_likelihoodOpts", "How well a scan fits", params.likelihood),
+      joined_section(prefix + "_renderOpts", "What 3D views show", params.render),
+      joined_section(prefix + "_robot", "The robot that costs are for", params.robot)};
+  for (Section& stage : params::sections_of(description)) {
+    if (stage.name == "grid") continue;  // stands in creationOpts
+    stage.name = prefix + "_" + stage.name;
+    sections.push_back(std::move(stage));
+  }
+  return sections;
+}
+
+void load_map_params(const mrpt::config::CConfigFileBase& config, const std::string& prefix,
+                     MapParams& params) {
+  MapParams loaded = params;
+  GenericParams generic;
+  std::vector<Section> sections = map_sections(prefix, loaded);
+  append_fields(generic, sections.front());
+  params::assign_all(document_of(config, prefix), sections);
+  check_together(loaded, source_of(config) + ": [" + prefix + "_...]");
+  params = loaded;
+}
+
+void check_together(const MapParams& params, const std::string& source) {
+  std::vector<std::string> problems;
+  const auto refuse = [&](bool wrong, const std::string& text) {
+    if (wrong) problems.push_back(source + " " + text);
+  };
+  refuse(params.input.min_range >= params.input.max_range,
+         "min_range: must be less than max_range");
+  refuse(params.description.classes.slope_min > params.description.classes.slope_max,
+         "slope_min_deg: must be at most slope_max_deg");
+  refuse(params.octree.prob_miss >= params.octree.prob_hit,
+         "octree_prob_miss: must be less than octree_prob_hit");
+  const GridParams& grid = params.description.grid;
+  const double cells = (grid.length / grid.cell_size) * (grid.width / grid.cell_size);
+  refuse(cells > kMostCells, "cell_size: makes more than a hundred million cells");
+  if (problems.empty()) return;
+  std::string text;
+  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
+  throw params::ParameterError(text);
+}
+
+}  // namespace mrpt_terrain

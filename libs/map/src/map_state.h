@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "mrpt_terrain/core/describe.h"
+#include "mrpt_terrain/map/terrain_map.h"
+#include "octree_half.h"
+
+namespace mrpt_terrain {
+
+/// What one writer works with.
+struct MapWriter {
+  io::SensorPoints sensor_points;
+  io::Scan scan;
+  DescriptionWorkspace workspace;
+  CostWorkspace costs;
+  std::uint64_t next_identity = 1;
+  std::string refusal;
+};
+
+struct CTerrainMap::State {
+  explicit State(const MapParams& given);
+  State(const State& other);
+  State& operator=(const State&) = delete;
+
+  MapParams params;
+  /// Held while the map changes; readers do without.
+  mutable std::mutex writing;
+  MapWriter writer;
+  std::unique_ptr<OctreeHalf> octree;  ///< null: the map keeps none
+
+  [[nodiscard]] TerrainSnapshotPtr snapshot() const;
+  void publish(TerrainSnapshotPtr next);
+  /// Describes `scan`, takes it into the OctoMap and publishes what came out. Needs `writing`.
+  bool insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot);
+
+  /// All that the map knows (serialization.cpp).
+  [[nodiscard]] std::string bytes() const;
+  /// Throws std::runtime_error saying what is wrong with the bytes.
+  [[nodiscard]] static std::unique_ptr<State> from_bytes(const std::string& bytes);
+
+ private:
+  mutable std::mutex swapping_;  ///< held for the time of copying a pointer
+  TerrainSnapshotPtr snapshot_;
+};
+
+[[nodiscard]] Eigen::Isometry3d isometry_of(const mrpt::poses::CPose3D& pose);
+[[nodiscard]] mrpt::poses::CPose3D pose_of(const Eigen::Isometry3d& T);
+
+/// Describes a scan and computes its costs: all of a snapshot but its revision and the identities
+/// of its clusters.
+[[nodiscard]] std::shared_ptr<TerrainSnapshot> describe_scan(const io::Scan& scan,
+                                                             const Eigen::Isometry3d& T_map_robot,
+                                                             const MapParams& params,
+                                                             MapWriter& writer);
+
+/// Whether a cost says something.
+[[nodiscard]] inline bool is_known(const Cost& cost) {
+  return cost.status == CostStatus::kOk || cost.status == CostStatus::kLethal;
+}
+
+/// log-likelihood of points, window frame of the robot, at a pose (likelihood.cpp).
+[[nodiscard]] double log_likelihood(const TerrainSnapshot& snapshot, const PointsView& points,
+                                    const Eigen::Isometry3d& T_map_robot,
+                                    const MapLikelihoodParams& params);
+
+/// Everything that a snapshot is saved as (map_files.cpp).
+void save_files(const CTerrainMap& map, const std::string& prefix);
+
+/// Draws a snapshot (drawing.cpp).
+void draw(const CTerrainMap& map, const MapRenderParams& render,
+          mrpt::opengl::CSetOfObjects& objects);
+
+}  // namespace mrpt_terrain

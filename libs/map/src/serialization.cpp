@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A map as bytes. What was described is not stored but described again: the same points and
+// parameters give the same bits (describe.h).
+#include <mrpt/config/CConfigFileMemory.h>
+#include <mrpt/serialization/CArchive.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "blob.h"
+#include "map_state.h"
+#include "mrpt_terrain/params/ini.h"
+
+IMPLEMENTS_SERIALIZABLE(CTerrainMap, mrpt::maps::CMetricMap, mrpt_terrain)
+
+namespace mrpt_terrain {
+namespace {
+
+constexpr std::array<char, 8> kMagic{'T', 'E', 'R', 'R', 'A', 'I', 'N', '\n'};
+constexpr std::uint32_t kFormat = 1;
+const std::string kPrefix = "map";
+
+std::uint32_t checksum_of(const std::string& bytes) {
+  uLong sum = crc32(0L, Z_NULL, 0);
+  for (std::size_t begin = 0; begin < bytes.size();) {
+    const std::size_t n = std::min<std::size_t>(bytes.size() - begin, 1U << 30U);
+    sum = crc32(sum, reinterpret_cast<const Bytef*>(bytes.data() + begin), static_cast<uInt>(n));
+    begin += n;
+  }
+  return static_cast<std::uint32_t>(sum);
+}
+
+std::string text_of(const MapParams& params) {
+  MapParams copy = params;
+  return params::ini_text(map_sections(kPrefix, copy));
+}
+
+MapParams params_of(const std::string& text) {
+  mrpt::config::CConfigFileMemory config;
+  config.setContent(text);
+  MapParams params;
+  load_map_params(config, kPrefix, params);
+  return params;
+}
+
+void put_pose(const Eigen::Isometry3d& T, BlobWriter& blob) {
+  for (int k = 0; k < 16; ++k) blob.put(T.matrix()(k / 4, k % 4));
+}
+
+Eigen::Isometry3d get_pose(BlobReader& blob) {
+  Eigen::Isometry3d T;
+  for (int k = 0; k < 16; ++k) T.matrix()(k / 4, k % 4) = blob.get<double>();
+  if (!T.matrix().allFinite()) throw std::runtime_error("a pose in it is not finite");
+  return T;
+}
+
+void put_scan(const TerrainSnapshot& snapshot, BlobWriter& blob) {
+  blob.put(snapshot.stamp);
+  put_pose(snapshot.T_map_robot, blob);
+  for (const auto* axis : {&snapshot.points.x, &snapshot.points.y, &snapshot.points.z}) {
+    blob.put_all(*axis);
+  }
+  blob.put_all(snapshot.ray_origins);
+  blob.put_all(snapshot.origin_of);
+}
+
+Eigen::Isometry3d get_scan(BlobReader& blob, io::Scan& scan) {
+  scan.stamp = blob.get<double>();
+  const Eigen::Isometry3d T_map_robot = get_pose(blob);
+  for (auto* axis : {&scan.points.x, &scan.points.y, &scan.points.z}) blob.get_all(*axis);
+  blob.get_all(scan.ray_origins);
+  blob.get_all(scan.origin_of);
+  const std::size_t n = scan.points.size();
+  const auto known = [&](std::uint32_t k) { return k < scan.ray_origins.size(); };
+  if (scan.points.y.size() != n || scan.points.z.size() != n ||
+      (!scan.origin_of.empty() && scan.origin_of.size() != n) ||
+      !std::all_of(scan.origin_of.begin(), scan.origin_of.end(), known)) {
+    throw std::runtime_error("the arrays of its scan do not fit together");
+  }
+  return T_map_robot;
+}
+
+std::vector<std::uint64_t> identities_of(const TerrainSnapshot& snapshot) {
+  std::vector<std::uint64_t> identities;
+  for (const ClusterView& cluster : snapshot.clusters) identities.push_back(cluster.identity);
+  return identities;
+}
+
+std::string read_bytes(mrpt::serialization::CArchive& in, std::uint64_t n) {
+  // Piece by piece: a damaged length must not ask for more memory than the file has bytes.
+  constexpr std::uint64_t kPiece = 1U << 20U;
+  std::string bytes;
+  while (bytes.size() < n) {
+    const std::size_t begin = bytes.size();
+    const auto piece = static_cast<std::size_t>(std::min(kPiece, n - begin));
+    bytes.resize(begin + piece);
+    if (in.ReadBuffer(bytes.data() + begin, piece) != piece) {
+      throw std::runtime_error("terrain map: it is cut off");
+    }
+  }
+  return bytes;
+}
+
+}  // namespace
+
+std::string CTerrainMap::State::bytes() const {
+  const std::lock_guard lock(writing);
+  const TerrainSnapshotPtr now = snapshot();
+  BlobWriter blob;
+  blob.put_text(text_of(params));
+  blob.put(now->revision);
+  blob.put(writer.next_identity);
+  if (now->revision != 0) {
+    put_scan(*now, blob);
+    blob.put_all(identities_of(*now));
+  }
+  if (octree) blob.put_text(octree->bytes());
+  return blob.bytes();
+}
+
+std::unique_ptr<CTerrainMap::State> CTerrainMap::State::from_bytes(const std::string& bytes) {
+  BlobReader blob(bytes);
+  auto state = std::make_unique<State>(params_of(blob.get_text()));
+  const auto revision = blob.get<std::uint64_t>();
+  state->writer.next_identity = blob.get<std::uint64_t>();
+  if (revision != 0) {
+    io::Scan scan;
+    const Eigen::Isometry3d T_map_robot = get_scan(blob, scan);
+    const auto next = describe_scan(scan, T_map_robot, state->params, state->writer);
+    next->revision = revision;
+    std::uint64_t unused = 0;
+    next->name_clusters(nullptr, unused);
+    std::vector<std::uint64_t> identities;
+    blob.get_all(identities);
+    if (identities.size() != next->clusters.size()) {
+      throw std::runtime_error("its clusters are not those of its points");
+    }
+    for (std::size_t k = 0; k < identities.size(); ++k) {
+      next->clusters[k].identity = identities[k];
+    }
+    state->publish(next);
+  }
+  if (state->octree) state->octree->restore(blob.get_text());
+  if (!blob.at_end()) throw std::runtime_error("there is more in it than a map");
+  return state;
+}
+
+uint8_t CTerrainMap::serializeGetVersion() const { return 0; }
+
+void CTerrainMap::serializeTo(mrpt::serialization::CArchive& out) const {
+  const std::string bytes = state_->bytes();
+  out << genericMapParams;
+  out.WriteBuffer(kMagic.data(), kMagic.size());
+  out << kFormat << static_cast<std::uint64_t>(bytes.size()) << checksum_of(bytes);
+  if (!bytes.empty()) out.WriteBuffer(bytes.data(), bytes.size());
+}
+
+void CTerrainMap::serializeFrom(mrpt::serialization::CArchive& in, uint8_t version) {
+  if (version != 0) {
+    throw std::runtime_error("terrain map: written by a later version of this class (" +
+                             std::to_string(version) + "), which this one cannot read");
+  }
+  mrpt::maps::TMapGenericParams generic;
+  in >> generic;
+  std::array<char, 8> magic{};
+  in.ReadBuffer(magic.data(), magic.size());
+  if (magic != kMagic) throw std::runtime_error("terrain map: these bytes are no terrain map");
+  std::uint32_t format = 0, checksum = 0;
+  std::uint64_t size = 0;
+  in >> format >> size >> checksum;
+  if (format != kFormat) {
+    throw std::runtime_error("terrain map: format " + std::to_string(format) +
+                             " is unknown; this version reads 1 to " + std::to_string(kFormat));
+  }
+  const std::string bytes = read_bytes(in, size);
+  if (checksum_of(bytes) != checksum) {
+    throw std::runtime_error("terrain map: it is damaged (the checksum is wrong)");
+  }
+  try {
+    state_ = State::from_bytes(bytes);
+  } catch (const std::exception& error) {
+    throw std::runtime_error(std::string("terrain map: ") + error.what());
+  }
+  genericMapParams = generic;
+}
+
+}  // namespace mrpt_terrain

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/map/snapshot.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace mrpt_terrain {
+namespace {
+
+// Points that give a cluster's features half of their worth.
+constexpr double kHalfTrusted = 30.0;
+
+double overlap(const MapBox& a, const MapBox& b) {
+  const double x = std::min(a.max.x, b.max.x) - std::max(a.min.x, b.min.x);
+  const double y = std::min(a.max.y, b.max.y) - std::max(a.min.y, b.min.y);
+  return std::max(0.0, x) * std::max(0.0, y);
+}
+
+bool touch(const MapBox& a, const MapBox& b) {
+  return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y;
+}
+
+MapBox box_of(const ClusterDescription& thing, const Eigen::Isometry3d& T_map_window) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  MapBox box{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+  for (const double x : {thing.min_corner.x, thing.max_corner.x}) {
+    for (const double y : {thing.min_corner.y, thing.max_corner.y}) {
+      const double z = 0.5 * (static_cast<double>(thing.h_min) + static_cast<double>(thing.h_max));
+      const Eigen::Vector3d corner = T_map_window * Eigen::Vector3d(x, y, z);
+      box.min = {std::min(box.min.x, corner.x()), std::min(box.min.y, corner.y())};
+      box.max = {std::max(box.max.x, corner.x()), std::max(box.max.y, corner.y())};
+    }
+  }
+  return box;
+}
+
+ClusterView view_of(const ClusterDescription& thing, const Eigen::Isometry3d& T_map_window) {
+  ClusterView view;
+  view.description = thing;
+  view.confidence = thing.points / (thing.points + kHalfTrusted);
+  view.centre =
+      T_map_window *
+      Eigen::Vector3d(thing.centroid.x, thing.centroid.y,
+                      0.5 * (static_cast<double>(thing.h_min) + static_cast<double>(thing.h_max)));
+  view.box = box_of(thing, T_map_window);
+  return view;
+}
+
+/// Two clusters, one of before and one of now, that share a place.
+struct Match {
+  double area;
+  std::size_t now, before;
+};
+
+/// All pairs whose boxes overlap, the largest overlap first.
+std::vector<Match> matches_of(const std::vector<ClusterView>& now,
+                              const std::vector<ClusterView>& before) {
+  std::vector<std::size_t> by_x(before.size());
+  for (std::size_t k = 0; k < by_x.size(); ++k) by_x[k] = k;
+  std::sort(by_x.begin(), by_x.end(), [&](std::size_t a, std::size_t b) {
+    return before[a].box.min.x < before[b].box.min.x;
+  });
+  std::vector<Match> matches;
+  for (std::size_t n = 0; n < now.size(); ++n) {
+    for (const std::size_t b : by_x) {
+      if (before[b].box.min.x > now[n].box.max.x) break;
+      const double area = overlap(now[n].box, before[b].box);
+      if (area > 0.0) matches.push_back({area, n, b});
+    }
+  }
+  std::sort(matches.begin(), matches.end(), [](const Match& a, const Match& b) {
+    if (a.area != b.area) return a.area > b.area;
+    return a.now != b.now ? a.now < b.now : a.before < b.before;
+  });
+  return matches;
+}
+
+}  // namespace
+
+Slot TerrainSnapshot::slot_at(double x, double y, PlaceStatus& status) const {
+  status = PlaceStatus::kOutside;
+  const Eigen::Vector3d up = T_map_window.linear().col(2);
+  const Eigen::Vector3d origin = T_map_window.translation();
+  // A window on its edge has no place over (x, y).
+  if (revision == 0 || !(std::abs(up.z()) > 1e-6)) return kUnobserved;
+  const double z = origin.z() - (up.x() * (x - origin.x()) + up.y() * (y - origin.y())) / up.z();
+  const Eigen::Vector3d place =
+      T_map_window.linear().transpose() * (Eigen::Vector3d(x, y, z) - origin);
+  CellIndex cell;
+  if (!description.grid.geometry.cell_at(place.x(), place.y(), cell)) return kUnobserved;
+  const Slot slot = description.grid.slot_at(cell);
+  status = slot == kUnobserved ? PlaceStatus::kUnknown : PlaceStatus::kKnown;
+  return slot;
+}
+
+CellView TerrainSnapshot::cell_at(double x, double y) const {
+  CellView view;
+  const Slot slot = slot_at(x, y, view.status);
+  if (slot == kUnobserved) return view;
+  const auto k = static_cast<std::size_t>(slot);
+  const ElevationGrid& grid = description.grid;
+  const Position2 centre = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[k]));
+  const auto in_map = [&](float height) {
+    const Eigen::Vector3d point(centre.x, centre.y, static_cast<double>(height));
+    return (T_map_window * point).z();
+  };
+  view.height = in_map(grid.h_mean[k]);
+  view.lowest = in_map(grid.h_min[k]);
+  view.highest = in_map(grid.h_max[k]);
+  view.points = static_cast<std::int32_t>(grid.sums[k].n);
+  view.support = description.cells.support[k];
+  view.terrain_class = description.cells.terrain_class[k];
+  view.cluster = description.clusters.cluster_of[k];
+  return view;
+}
+
+Cost TerrainSnapshot::cost_at(double x, double y, double heading) const {
+  PlaceStatus status;
+  const Slot slot = slot_at(x, y, status);
+  if (status == PlaceStatus::kOutside) return Cost{CostStatus::kOutside, 0.0, {}};
+  const Eigen::Vector3d ahead = T_map_window.linear().transpose() *
+                                Eigen::Vector3d(std::cos(heading), std::sin(heading), 0.0);
+  return cost_of(costs, slot, robot, std::atan2(ahead.y(), ahead.x()));
+}
+
+Cost TerrainSnapshot::cost_at(double x, double y) const {
+  PlaceStatus status;
+  const Slot slot = slot_at(x, y, status);
+  if (status == PlaceStatus::kOutside) return Cost{CostStatus::kOutside, 0.0, {}};
+  return cost_of(costs, slot, robot);
+}
+
+std::vector<std::size_t> TerrainSnapshot::clusters_in(const MapBox& box) const {
+  std::vector<std::size_t> found;
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    if (touch(clusters[k].box, box)) found.push_back(k);
+  }
+  return found;
+}
+
+void TerrainSnapshot::name_clusters(const TerrainSnapshot* before, std::uint64_t& next_identity) {
+  clusters.clear();
+  for (const ClusterDescription& thing : description.things) {
+    clusters.push_back(view_of(thing, T_map_window));
+  }
+  std::vector<bool> named(clusters.size(), false);
+  if (before != nullptr) {
+    std::vector<bool> passed_on(before->clusters.size(), false);
+    for (const Match& match : matches_of(clusters, before->clusters)) {
+      if (named[match.now] || passed_on[match.before]) continue;
+      named[match.now] = passed_on[match.before] = true;
+      clusters[match.now].identity = before->clusters[match.before].identity;
+    }
+  }
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    if (!named[k]) clusters[k].identity = next_identity++;
+  }
+}
+
+}  // namespace mrpt_terrain
