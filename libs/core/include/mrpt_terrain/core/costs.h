@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mrpt_terrain/core/elevation_grid.h"
+#include "mrpt_terrain/core/feature_status.h"
+#include "mrpt_terrain/core/local_planes.h"
+#include "mrpt_terrain/core/param_info.h"
+
+/// \file
+/// What it costs a robot to drive over a cell: the largest of three parts, slope, step and
+/// roughness, each a measured number over the robot's limit for it. doc/costs.md has the formulas
+/// with their reasons.
+namespace mrpt_terrain {
+
+/// A robot as its file in params/robots/ describes it. The defaults are a small outdoor robot.
+///
+/// `compute_cell_costs` and `cost_of` read `footprint_width` (size of the windows) and the four
+/// `max_` limits; the other dimensions are for those who plan with the same file.
+struct RobotParams {
+  double footprint_length = 0.5;          ///< metres
+  double footprint_width = 0.4;           ///< metres
+  double height = 0.4;                    ///< from the ground to the highest part, metres
+  double ground_clearance = 0.08;         ///< under the body, metres
+  double wheel_radius = 0.1;              ///< metres
+  double max_climb = 0.3490658503988659;  ///< 20 deg, radians
+  double max_tilt = 0.2617993877991494;   ///< 15 deg, radians
+  double max_step = 0.08;                 ///< metres
+  double max_roughness = 0.05;            ///< metres
+
+  template <class Self, class Visitor>
+  static void visit_params(Self& self, Visitor&& visit) {
+    visit(self.footprint_length,
+          ParamInfo{"footprint_length", "", "m", 0.05, 20.0, "extent along the robot's x"});
+    visit(self.footprint_width,
+          ParamInfo{"footprint_width", "", "m", 0.05, 20.0,
+                    "extent along the robot's y; slopes are told from windows half as wide"});
+    visit(self.height,
+          ParamInfo{"height", "", "m", 0.01, 20.0, "from the ground to the highest part"});
+    visit(self.ground_clearance,
+          ParamInfo{"ground_clearance", "", "m", 0.0, 5.0, "free height under the body"});
+    visit(self.wheel_radius, ParamInfo{"wheel_radius", "", "m", 0.005, 5.0, "radius of a wheel"});
+    visit(self.max_climb, ParamInfo{"max_climb_deg", "", "deg", 1.0, 80.0,
+                                    "slope along the heading from which a cell is lethal"});
+    visit(self.max_tilt, ParamInfo{"max_tilt_deg", "", "deg", 1.0, 80.0,
+                                   "slope across the heading from which a cell is lethal"});
+    visit(self.max_step, ParamInfo{"max_step", "", "m", 0.001, 5.0,
+                                   "height of a step, up or down, from which a cell is lethal"});
+    visit(self.max_roughness,
+          ParamInfo{"max_roughness", "", "m", 0.001, 5.0,
+                    "standard deviation of heights about the plane from which a cell is lethal"});
+  }
+
+  /// The section of a robot file.
+  template <class Self, class Visitor>
+  static void visit_sections(Self& self, Visitor&& visit) {
+    visit(self, "robot", "Size and limits of the robot");
+  }
+};
+
+/// Whether a cost is known.
+enum class CostStatus : std::uint8_t {
+  kOk = 0,   ///< can be driven on; the cost is below 1
+  kLethal,   ///< must not be driven on; the cost is 1
+  kUnknown,  ///< no points in the cell, or too few around it for a slope
+  kOutside,  ///< beyond the edges of the grid
+};
+constexpr EnumNames<CostStatus, 4> enum_names(CostStatus) {
+  return {{{CostStatus::kOk, "ok"},
+           {CostStatus::kLethal, "lethal"},
+           {CostStatus::kUnknown, "unknown"},
+           {CostStatus::kOutside, "outside"}}};
+}
+
+/// What the ground is like in each observed cell; arrays over the slots of a grid. Independent of
+/// the robot's limits but for what `compute_cell_costs` says.
+struct CellCosts {
+  std::vector<float> gradient_x;      ///< rise per metre along x, at most kSteepestGradient long
+  std::vector<float> gradient_y;      ///< the same along y
+  std::vector<float> step;            ///< height of the highest step at the cell, metres, >= 0
+  std::vector<float> roughness;       ///< standard deviation about the plane, metres, >= 0
+  std::vector<FeatureStatus> status;  ///< of gradient and roughness: they mean something when kOk.
+                                      ///< The step is known always, as far as points tell.
+
+  [[nodiscard]] std::size_t size() const { return status.size(); }
+};
+
+/// Scratch memory of `compute_cell_costs`.
+struct CostWorkspace {
+  std::vector<LocalPlane> planes;  ///< per slot: of the window about it
+  std::vector<Slot> surface;       ///< per slot: the window whose plane it takes, or kUnobserved
+};
+
+/// Cells to each side of a window: a quarter of the robot's width, from 1 to kMaxReach cells.
+/// A window is about half as wide as the robot, so that no slope is averaged away that only one
+/// wheel feels, and noise of 2 cm leaves a plane over 5 cm cells level within a few degrees.
+[[nodiscard]] int window_reach(const RobotParams& robot, double cell_size);
+
+/// Measures slope, step and roughness of every observed cell.
+///
+/// * Surface of a cell: the smoothest of the planes of nine windows that contain it, its own and
+///   those about the cells `window_reach` away in eight directions, as far as they have at least as
+///   many observed cells as its own; beside a curb, that is a window that ends at the curb.
+///   Gradient and roughness are those of this plane; without one, `status` says why.
+/// * Step of a cell: in each of four directions, the heights of the surfaces of the cells before
+///   and behind it, carried on to it, and its own mean height differ; the greatest difference
+///   counts. 0 on any plane, h at a curb, pit or post of height h, whether it is as narrow as a
+///   cell or not. Where a neighbour has no surface, that of the cell stands in; where that is
+///   missing too, mean heights count as far as they differ by more than `max_climb` explains.
+/// * Or, if that is greater, h_max - h_min of the cell beyond what its gradient (up to `max_climb`)
+///   and noise (six times the least roughness around) explain: thin things of few points.
+///
+/// The robot's width, `max_climb` and the cell size are all that the result depends on besides the
+/// points. The same input gives the same bytes; results that keep their memory do not allocate.
+/// \param grid heights and sums of observed cells, metres
+/// \param[in,out] costs overwritten; one entry per slot of `grid`
+void compute_cell_costs(const ElevationGrid& grid, const RobotParams& robot,
+                        CostWorkspace& workspace, CellCosts& costs);
+
+/// Measured numbers over the robot's limits, >= 0; 1 and more is too much.
+struct CostParts {
+  double slope = 0.0;
+  double step = 0.0;
+  double roughness = 0.0;
+};
+
+/// Cost of driving on a cell.
+struct Cost {
+  CostStatus status = CostStatus::kUnknown;
+  double cost = 0.0;  ///< [0, 1]; means something when status is kOk or kLethal
+  CostParts parts;    ///< slope and roughness are 0 where they are not known
+};
+
+/// Cost in a heading: slope is the greater of the angle along the heading over `max_climb` and the
+/// angle across it over `max_tilt`. Unknown for kUnobserved, and where the slope is not known,
+/// unless the step alone is lethal.
+/// \param slot a slot of the grid that the costs are of, or kUnobserved
+/// \param heading radians from the grid's x axis, counter-clockwise
+[[nodiscard]] Cost cost_of(const CellCosts& costs, Slot slot, const RobotParams& robot,
+                           double heading);
+
+/// Cost in the worst heading: the whole slope, over the smaller of the two limits.
+[[nodiscard]] Cost cost_of(const CellCosts& costs, Slot slot, const RobotParams& robot);
+
+/// The same at a position in the frame of the grid, metres; kOutside beyond the edges and for NaN.
+[[nodiscard]] Cost cost_at(const ElevationGrid& grid, const CellCosts& costs, Position2 position,
+                           const RobotParams& robot, double heading);
+[[nodiscard]] Cost cost_at(const ElevationGrid& grid, const CellCosts& costs, Position2 position,
+                           const RobotParams& robot);
+
+}  // namespace mrpt_terrain
