@@ -3,6 +3,7 @@
 # stands here.
 set(terrain_layer_files "")
 set(terrain_layer_core "Eigen3::Eigen")
+set(terrain_layer_octree "octomap")
 set(terrain_layer_params "core" "mrpt::config" "mrpt::containers")
 set(terrain_layer_sensors "params" "yaml-cpp" "mrpt::containers")
 set(terrain_layer_sim "core" "files" "params" "sensors" "embree" "yaml-cpp")
