@@ -3,13 +3,13 @@
 # stands here.
 set(terrain_layer_files "")
 set(terrain_layer_core "Eigen3::Eigen")
+set(terrain_layer_octree "octomap")
 set(terrain_layer_params "core" "mrpt::config" "mrpt::containers")
 set(terrain_layer_sensors "params" "yaml-cpp" "mrpt::containers")
 set(terrain_layer_sim "core" "files" "params" "sensors" "embree" "yaml-cpp")
 set(terrain_layer_io "core" "files" "params" "sensors" "mrpt::obs" "mrpt::maps" "mrpt::io" "mrpt::containers" "ZLIB::ZLIB")
 set(terrain_layer_view "core" "files" "mrpt::opengl" "PkgConfig::cairo" "nlohmann_json::nlohmann_json"
   "ZLIB::ZLIB")
-set(terrain_layer_octree "octomap")
 # `view` draws and writes descriptions for the map as for terrain-rawlog.
 set(terrain_layer_map "core" "files" "io" "octomap" "octree" "params" "sensors" "view" "mrpt::maps" "mrpt::opengl"
   "ZLIB::ZLIB")

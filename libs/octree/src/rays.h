@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "cell_code.h"
+
+/// \file
+/// Rays made ready for the walk from cell to cell. All numbers come about as in OctoMap, which
+/// computes directions and lengths in float and crossings in double: the cells of a ray depend on
+/// the last bit.
+namespace mrpt_terrain::octree {
+
+using Place = std::array<float, 3>;  ///< metres
+
+/// Cells along the axes: key k covers [k - 2^15, k + 1 - 2^15) * resolution.
+struct CellGrid {
+  double resolution;  ///< metres
+  double cells_per_metre;
+
+  explicit CellGrid(double given_resolution)
+      : resolution(given_resolution), cells_per_metre(1.0 / given_resolution) {}
+
+  /// Whether a place lies in the 2^16 cells per axis, and its key.
+  [[nodiscard]] bool find_key(const Place& place, CellKey& key) const;
+  /// Centre of a cell along an axis, metres.
+  [[nodiscard]] double centre(std::uint16_t key) const {
+    return (static_cast<double>(int{key} - 32768) + 0.5) * resolution;
+  }
+};
+
+/// Length of the vector between two places, computed as in OctoMap.
+[[nodiscard]] double distance_between(const Place& from, const Place& to);
+
+/// End of a ray that is cut at `range`, metres.
+[[nodiscard]] Place cut_ray(const Place& origin, const Place& end, double range);
+
+/// A number of rays, structure of arrays.
+struct RayBatch {
+  static constexpr std::size_t kCapacity = 512;
+  std::size_t size = 0;
+  /// Per axis: where along the ray the next border of cells is crossed, and how far apart the
+  /// borders are, metres; the greatest double for an axis along which the ray does not move.
+  alignas(64) std::array<std::array<double, kCapacity>, 3> crossing;
+  alignas(64) std::array<std::array<double, kCapacity>, 3> spacing;
+  alignas(64) std::array<double, kCapacity> length;  ///< metres
+  alignas(64) std::array<CellCode, kCapacity> first, last;
+  /// Per axis: +1, 0 or -1 as bits of that axis in a code.
+  alignas(64) std::array<std::array<CellCode, kCapacity>, 3> step;
+  std::array<std::uint32_t, kCapacity> cells;  ///< steps from the first cell to the last
+
+  /// Adds a ray between different cells.
+  void add(const CellGrid& grid, const Place& origin, const CellKey& origin_key, const Place& end,
+           const CellKey& end_key);
+};
+
+}  // namespace mrpt_terrain::octree

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scan_cells.h"
+
+#include <algorithm>
+
+namespace mrpt_terrain::octree {
+namespace {
+
+constexpr std::size_t kFirstTableSize = 1024;
+
+std::size_t hash(CellCode tile_code) {
+  return static_cast<std::size_t>(tile_code * 0x9e3779b97f4a7c15U >> 32);
+}
+
+}  // namespace
+
+ScanCells::ScanCells() : blocks_(1), table_(kFirstTableSize) {}
+
+void ScanCells::clear() {
+  tiles_.clear();
+  blocks_.resize(1);
+  std::fill(table_.begin(), table_.end(), 0U);
+}
+
+void ScanCells::mark_occupied(CellCode code) {
+  CellTile& tile = tiles_[tile_number(code >> 18)];
+  std::uint32_t block = tile.block[code >> 9 & 511];
+  if (block == 0) block = add_block(tile, code);
+  tile.occupied[code >> 15 & 7] |= std::uint64_t{1} << (code >> 9 & 63);
+  blocks_[block].occupied[code >> 6 & 7] |= std::uint64_t{1} << (code & 63);
+}
+
+std::size_t ScanCells::tile_number(CellCode tile_code) {
+  std::size_t place = hash(tile_code) & (table_.size() - 1);
+  while (table_[place] != 0) {
+    const std::size_t number = table_[place] - 1;
+    if (tiles_[number].code == tile_code) return number;
+    place = (place + 1) & (table_.size() - 1);
+  }
+  tiles_.emplace_back();
+  tiles_.back().code = tile_code;
+  table_[place] = static_cast<std::uint32_t>(tiles_.size());
+  if (2 * tiles_.size() > table_.size()) double_table();
+  return tiles_.size() - 1;
+}
+
+std::uint32_t ScanCells::add_block(CellTile& tile, CellCode code) {
+  const auto number = static_cast<std::uint32_t>(blocks_.size());
+  blocks_.emplace_back();
+  tile.block[code >> 9 & 511] = number;
+  tile.present[code >> 15 & 7] |= std::uint64_t{1} << (code >> 9 & 63);
+  return number;
+}
+
+void ScanCells::double_table() {
+  table_.assign(2 * table_.size(), 0U);
+  for (std::size_t number = 0; number < tiles_.size(); ++number) {
+    std::size_t place = hash(tiles_[number].code) & (table_.size() - 1);
+    while (table_[place] != 0) place = (place + 1) & (table_.size() - 1);
+    table_[place] = static_cast<std::uint32_t>(number + 1);
+  }
+}
+
+}  // namespace mrpt_terrain::octree

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "update_tree.h"
+
+#include <cstddef>
+#include <cstdint>
+
+#include "tree_access.h"
+
+namespace mrpt_terrain::octree {
+namespace {
+
+// Marked cells of a cube of 2^kLevel cells, of a cell at level 0 up to a tile at level 6. Each has
+// the same questions: is there any, are there free or occupied ones, are all the same, and which
+// are those of child k.
+struct CellMarks {
+  static constexpr int kLevel = 0;
+  bool occupied;
+  [[nodiscard]] bool any_free() const { return !occupied; }
+  [[nodiscard]] bool any_occupied() const { return occupied; }
+  [[nodiscard]] bool all_free() const { return !occupied; }
+  [[nodiscard]] bool all_occupied() const { return occupied; }
+};
+
+struct PairMarks {
+  static constexpr int kLevel = 1;
+  std::uint8_t free, occupied;  // disjoint
+  [[nodiscard]] bool any() const { return (free | occupied) != 0; }
+  [[nodiscard]] bool any_free() const { return free != 0; }
+  [[nodiscard]] bool any_occupied() const { return occupied != 0; }
+  [[nodiscard]] bool all_free() const { return free == 0xff; }
+  [[nodiscard]] bool all_occupied() const { return occupied == 0xff; }
+  [[nodiscard]] bool has_part(std::size_t k) const { return ((free | occupied) >> k & 1) != 0; }
+  [[nodiscard]] CellMarks part(std::size_t k) const { return {(occupied >> k & 1) != 0}; }
+};
+
+struct WordMarks {
+  static constexpr int kLevel = 2;
+  std::uint64_t free, occupied;  // disjoint
+  [[nodiscard]] bool any_free() const { return free != 0; }
+  [[nodiscard]] bool any_occupied() const { return occupied != 0; }
+  [[nodiscard]] bool all_free() const { return ~free == 0; }
+  [[nodiscard]] bool all_occupied() const { return ~occupied == 0; }
+  [[nodiscard]] bool has_part(std::size_t k) const { return part(k).any(); }
+  [[nodiscard]] PairMarks part(std::size_t k) const {
+    return {static_cast<std::uint8_t>(free >> 8 * k), static_cast<std::uint8_t>(occupied >> 8 * k)};
+  }
+};
+
+struct BlockMarks {
+  static constexpr int kLevel = 3;
+  const CellBlock* block;
+  [[nodiscard]] bool has_part(std::size_t k) const {
+    return (block->free[k] | block->occupied[k]) != 0;
+  }
+  [[nodiscard]] WordMarks part(std::size_t k) const {
+    return {block->free[k] & ~block->occupied[k], block->occupied[k]};
+  }
+  [[nodiscard]] bool any_occupied() const {
+    std::uint64_t any = 0;
+    for (const std::uint64_t word : block->occupied) any |= word;
+    return any != 0;
+  }
+  [[nodiscard]] bool any_free() const {
+    for (std::size_t k = 0; k < 8; ++k) {
+      if (part(k).any_free()) return true;
+    }
+    return false;
+  }
+  [[nodiscard]] bool all_free() const {
+    std::uint64_t all = ~std::uint64_t{0};
+    for (std::size_t k = 0; k < 8; ++k) all &= part(k).free;
+    return ~all == 0;
+  }
+  [[nodiscard]] bool all_occupied() const {
+    std::uint64_t all = ~std::uint64_t{0};
+    for (const std::uint64_t word : block->occupied) all &= word;
+    return ~all == 0;
+  }
+};
+
+// Larger cubes do not say that all of their cells are the same, and take free ones for granted.
+struct TileMarks {
+  const ScanCells* cells;
+  const CellTile* tile;
+  [[nodiscard]] bool any_free() const { return true; }
+  [[nodiscard]] bool all_free() const { return false; }
+  [[nodiscard]] bool all_occupied() const { return false; }
+};
+
+// Two blocks along each axis: eight bits of a word of the tile.
+struct EightBlocks : TileMarks {
+  static constexpr int kLevel = 4;
+  std::size_t first;  // its first block
+  [[nodiscard]] bool any_occupied() const {
+    return (tile->occupied[first >> 6] >> (first & 63) & 0xff) != 0;
+  }
+  [[nodiscard]] bool has_part(std::size_t k) const { return tile->block[first + k] != 0; }
+  [[nodiscard]] BlockMarks part(std::size_t k) const {
+    return {&cells->block(tile->block[first + k])};
+  }
+};
+
+// Four blocks along each axis: a word of the tile.
+struct WordOfBlocks : TileMarks {
+  static constexpr int kLevel = 5;
+  std::size_t word;
+  [[nodiscard]] bool any_occupied() const { return tile->occupied[word] != 0; }
+  [[nodiscard]] bool has_part(std::size_t k) const {
+    return (tile->present[word] >> 8 * k & 0xff) != 0;
+  }
+  [[nodiscard]] EightBlocks part(std::size_t k) const { return {*this, 64 * word + 8 * k}; }
+};
+
+template <int kLevelAbove>
+struct AboveTile;
+
+struct WholeTile : TileMarks {
+  static constexpr int kLevel = 6;
+  [[nodiscard]] bool any_occupied() const {
+    std::uint64_t any = 0;
+    for (const std::uint64_t word : tile->occupied) any |= word;
+    return any != 0;
+  }
+  [[nodiscard]] bool has_part(std::size_t k) const { return tile->present[k] != 0; }
+  [[nodiscard]] WordOfBlocks part(std::size_t k) const { return {*this, k}; }
+};
+
+// A cube of which only those cells are looked at that lie in one tile.
+template <int kLevelAbove>
+struct AboveTile : WholeTile {
+  static constexpr int kLevel = kLevelAbove;
+  [[nodiscard]] bool has_part(std::size_t k) const {
+    return (tile->code >> 3 * (kLevelAbove - 7) & 7) == k;
+  }
+  [[nodiscard]] auto part(std::size_t) const {
+    if constexpr (kLevelAbove == 7) {
+      return WholeTile{*this};
+    } else {
+      return AboveTile<kLevelAbove - 1>{*this};
+    }
+  }
+};
+
+constexpr int kTreeDepth = 16;
+
+// One passage through the tree. Functions on nodes say whether OctoMap would have updated a cell
+// below the node: it leaves cells alone that are at the limit of their value already.
+template <bool kReport>
+class Passage {
+ public:
+  Passage(octomap::OcTree& tree, std::vector<FreedCube>* freed)
+      : tree_(tree),
+        hit_(tree.getProbHitLog()),
+        miss_(tree.getProbMissLog()),
+        least_(tree.getClampingThresMinLog()),
+        greatest_(tree.getClampingThresMaxLog()),
+        threshold_(tree.getOccupancyThresLog()),
+        freed_(freed) {}
+
+  void update(const ScanCells& cells, const CellTile& tile) {
+    OcTreeNode*& root = root_of(tree_);
+    const bool is_new = root == nullptr;
+    if (is_new) {
+      root = new OcTreeNode();
+      ++size_of(tree_);
+    }
+    update_node(*root, is_new, AboveTile<kTreeDepth>{{{&cells, &tile}}}, tile.code);
+  }
+
+ private:
+  // OctoMap's early abort.
+  [[nodiscard]] bool is_at_limit(float value, float change) const {
+    return (change >= 0.0F && value >= greatest_) || (change <= 0.0F && value <= least_);
+  }
+
+  // All cells of the node's cube get the same update; the node has no children.
+  template <class Marks>
+  bool update_leaf(OcTreeNode& node, bool is_new, const Marks& marks, CellCode code) {
+    const float change = marks.all_free() ? miss_ : hit_;
+    const float before = node.getLogOdds();
+    if (!is_new && is_at_limit(before, change)) return false;
+    float value = before + change;
+    if (value < least_) {
+      value = least_;
+    } else if (value > greatest_) {
+      value = greatest_;
+    }
+    node.setLogOdds(value);
+    if constexpr (kReport) {
+      if (!is_new && before >= threshold_ && !(value >= threshold_)) report(code, Marks::kLevel);
+    }
+    return true;
+  }
+
+  void report(CellCode code, int level) {
+    freed_->push_back({key_of(code << 3 * level), static_cast<std::uint16_t>(1 << level)});
+  }
+
+  // Whether no marked cell changes, if all cells of the cube have the value of the node.
+  template <class Marks>
+  [[nodiscard]] bool stays(const OcTreeNode& node, const Marks& marks) const {
+    const float value = node.getLogOdds();
+    return (!marks.any_free() || is_at_limit(value, miss_)) &&
+           (!marks.any_occupied() || is_at_limit(value, hit_));
+  }
+
+  // `code` of the node's cube, without the bits below its level.
+  template <class Marks>
+  bool update_node(OcTreeNode& node, bool is_new, const Marks& marks, CellCode code) {
+    if constexpr (Marks::kLevel == 0) {
+      return update_leaf(node, is_new, marks, code);
+    } else {
+      if (has_children(node)) return update_children(node, is_new, marks, code);
+      if (marks.all_free() || marks.all_occupied()) return update_leaf(node, is_new, marks, code);
+      if (is_new) return update_children(node, is_new, marks, code);
+      if (stays(node, marks)) return false;
+      tree_.expandNode(&node);
+      const bool touched = update_children(node, is_new, marks, code);
+      if (!touched) tree_.pruneNode(&node);
+      return touched;
+    }
+  }
+
+  template <class Marks>
+  bool update_children(OcTreeNode& node, bool is_new, const Marks& marks, CellCode code) {
+    bool touched = is_new;
+    for (std::size_t k = 0; k < 8; ++k) {
+      if (!marks.has_part(k)) continue;
+      OcTreeNode* child = child_of(node, k);
+      const bool is_new_child = child == nullptr;
+      if (is_new_child) child = tree_.createNodeChild(&node, static_cast<unsigned>(k));
+      const CellCode child_code = child_code_of<Marks::kLevel>(code, k);
+      touched |= update_node(*child, is_new_child, marks.part(k), child_code);
+    }
+    if (touched) prune_or_raise(tree_, node);
+    return touched;
+  }
+
+  // Above the tile there is one way only, and the code is the tile's.
+  template <int kLevel>
+  [[nodiscard]] static CellCode child_code_of(CellCode code, std::size_t k) {
+    return kLevel > 6 ? code : code << 3 | k;
+  }
+
+  octomap::OcTree& tree_;
+  float hit_, miss_, least_, greatest_, threshold_;  // log-odds
+  std::vector<FreedCube>* freed_;
+};
+
+}  // namespace
+
+void update_tree(const ScanCells& cells, octomap::OcTree& tree, std::vector<FreedCube>* freed) {
+  if (freed == nullptr) {
+    Passage<false> passage(tree, nullptr);
+    for (const CellTile& tile : cells.tiles()) passage.update(cells, tile);
+  } else {
+    Passage<true> passage(tree, freed);
+    for (const CellTile& tile : cells.tiles()) passage.update(cells, tile);
+  }
+}
+
+}  // namespace mrpt_terrain::octree

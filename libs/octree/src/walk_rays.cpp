@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "walk_rays.h"
+
+#include <algorithm>
+#include <array>
+
+#include "walk_chunk.h"
+
+namespace mrpt_terrain::octree {
+namespace {
+
+template <class Values, class Value>
+void load(const Values& from, const std::array<std::uint16_t, kLanes>& rays, Value* to) {
+  for (std::size_t lane = 0; lane < kLanes; ++lane) to[lane] = from[rays[lane]];
+}
+
+// Lanes beyond the first `count` stand still.
+void load_lanes(const RayBatch& batch, const std::array<std::uint16_t, kLanes>& rays,
+                std::size_t count, Lanes& lanes) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    load(batch.crossing[axis], rays, lanes.crossing[axis]);
+    load(batch.spacing[axis], rays, lanes.spacing[axis]);
+    load(batch.step[axis], rays, lanes.step[axis]);
+  }
+  load(batch.length, rays, lanes.length);
+  load(batch.first, rays, lanes.cell);
+  load(batch.last, rays, lanes.last);
+  unsigned alive = 0;
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    if (lanes.cell[lane] != lanes.last[lane]) alive |= 1U << lane;
+  }
+  lanes.alive = static_cast<std::uint8_t>(alive);
+}
+
+void walk_lanes(ChunkWalker walk_chunk, Lanes& lanes, ScanCells& cells) {
+  Trail trail;
+  while (lanes.alive != 0) {
+    walk_chunk(lanes, trail);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      cells.mark_free(&trail.cell[0][lane], kLanes, trail.steps[lane]);
+    }
+  }
+}
+
+// Rays in the order of their lengths, so that those side by side arrive together.
+void sort_by_cells(const RayBatch& rays, std::array<std::uint16_t, RayBatch::kCapacity>& order) {
+  for (std::size_t k = 0; k < rays.size; ++k) order[k] = static_cast<std::uint16_t>(k);
+  std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(rays.size),
+            [&rays](std::uint16_t a, std::uint16_t b) { return rays.cells[a] < rays.cells[b]; });
+}
+
+}  // namespace
+
+void walk_rays_by(ChunkWalker walk_chunk, RayBatch& rays, ScanCells& cells) {
+  std::array<std::uint16_t, RayBatch::kCapacity> order;
+  sort_by_cells(rays, order);
+  cells.mark_free(rays.first.data(), 1, rays.size);
+  for (std::size_t begin = 0; begin < rays.size; begin += kLanes) {
+    const std::size_t count = std::min(kLanes, rays.size - begin);
+    std::array<std::uint16_t, kLanes> group{};
+    std::copy_n(order.begin() + static_cast<std::ptrdiff_t>(begin), count, group.begin());
+    Lanes lanes;
+    load_lanes(rays, group, count, lanes);
+    walk_lanes(walk_chunk, lanes, cells);
+  }
+  rays.size = 0;
+}
+
+template <Ties kTies>
+void walk_rays(RayBatch& rays, ScanCells& cells) {
+  walk_rays_by(chunk_walkers<kTies>()[0], rays, cells);
+}
+
+template void walk_rays<Ties::kAsOctomap>(RayBatch&, ScanCells&);
+template void walk_rays<Ties::kFlipped>(RayBatch&, ScanCells&);
+
+}  // namespace mrpt_terrain::octree
