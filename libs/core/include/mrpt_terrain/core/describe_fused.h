@@ -15,11 +15,8 @@ namespace mrpt_terrain {
 /// Description of the window around the robot from fused cells.
 struct FusedDescription {
   WindowFrame frame;
-  Description description;        ///< in the frame of the window; `labels` are of the current scan
-  std::vector<float> height;      ///< per slot of the grid: as in `WindowCells`
-  std::vector<float> variance;    ///< per slot
-  std::vector<double> last_seen;  ///< per slot
-  std::vector<float> clearance;   ///< per slot
+  Description description;  ///< in the frame of the window; `labels` are of the current scan
+  WindowCells cells;
 };
 
 /// Scratch memory of `describe_fused`.

@@ -179,99 +179,11 @@ struct FusionWorkspace {
 FusionCounts fuse_scan(const PosedScan& scan, const FusionParams& params,
                        FusionWorkspace& workspace, FusedGrid& grid);
 
-/// What free space did to the grid.
-struct FreeSpaceCounts {
-  std::size_t bins_removed = 0;
-  std::size_t points_removed = 0;
-  std::size_t bins_guarded = 0;  ///< lie in free layers and were kept
-};
-
-/// Forgets heights where later rays have found empty space, and remembers the free space above the
-/// ground of each cell.
-///
-/// A bin is looked at if its layer is free in `free` and it was not hit since `free.time`. From the
-/// bottom of the cell up, with the *ground* the lowest bin that stays:
-/// 1. Without ground below, it goes only if the free span begins `guard_height` or more below its
-///    lowest point: rays went underneath. Rays that graze a surface pass above it, never below.
-/// 2. If it reaches higher than `guard_height` above the lowest point of the ground, it goes, if
-///    the free span begins in a layer below it, or within `guard_height` above the ground. (A ray
-///    that grazes the roof of a car frees the layer of the roof, but none inside the car.)
-/// 3. Otherwise, close above the ground like a curb, it goes once `guard_scans` scans have hit the
-///    cell, freed the layer, and not hit it.
-/// \param free same lattice as the grid; cells outside the grid are ignored
-FreeSpaceCounts apply_free_space(const FreeSpaceGrid& free, const FusionParams& params,
-                                 FusedGrid& grid);
-
 /// Moves the window of a rolling grid: cells outside `window` are forgotten. Costs what leaves.
 void move_window(const MapCellRect& window, FusedGrid& grid);
 
 /// Forgets all bins not seen since `time`. Looks at every bin of the map.
 void forget_before(double time, FusedGrid& grid);
-
-/// What is known of one cell. Heights in the map frame, metres.
-struct FusedCell {
-  double height = 0.0;    ///< of the ground: the mean of its lowest layer that is no outlier
-  double variance = 0.0;  ///< of the points about that height, m^2
-  double h_min = 0.0;     ///< lowest point, outliers below the ground left out
-  double h_max = 0.0;     ///< highest point that does not hang over
-  double low = 0.0;       ///< h_min and h_max, cut at `spread_limit` standard deviations
-  double high = 0.0;
-  Moments moments;         ///< of the same points; about the map's origin, centred
-  double last_seen = 0.0;  ///< stamp of the last scan that hit the cell, seconds
-  std::int32_t bins = 0;   ///< bins counted in
-  std::int32_t below = 0;  ///< points left out as outliers below the ground
-  bool overhung = false;   ///< something hangs over the cell with `clearance` or more below it
-  double overhang = 0.0;   ///< lowest point of it
-  LayerSpan free;          ///< layers known to be free above the ground; may be empty
-};
-
-/// Reads one cell. Returns false, and leaves `cell` as it was, if nothing is known of it: never
-/// observed, forgotten, or outside the window.
-/// \param ceiling metres, map frame: bins whose lowest point lies at or above are not read
-[[nodiscard]] bool read_cell(const FusedSnapshot& grid, MapCell where, const FusionParams& params,
-                             FusedCell& cell);
-/// The same for a cell of a tile at hand.
-[[nodiscard]] bool read_cell(const Tile& tile, std::size_t place, const FusedSnapshot& grid,
-                             const FusionParams& params, FusedCell& cell);
-
-/// A tile as plain numbers, to be stored and restored without a changed bit.
-struct TileState {
-  struct Cell {
-    std::uint8_t place = 0;  ///< number of the cell within the tile
-    std::uint16_t bins = 0;  ///< its bins follow each other in `bins`, lowest first
-    LayerSpan free;
-  };
-  TileIndex tile;
-  std::vector<Cell> cells;      ///< cells that hold anything, by number
-  std::vector<HeightBin> bins;  ///< `next` is kNoBin
-};
-
-/// Writes down a tile; depends on what it holds alone, not on how it came to be.
-void save_tile(TileIndex index, const Tile& tile, TileState& state);
-
-/// What is wrong with a stored tile.
-enum class RestoreStatus : std::uint8_t {
-  kOk = 0,
-  kBadIndex,   ///< tile outside the lattice
-  kBadCells,   ///< cells not ascending, or numbers of bins that do not add up
-  kBadBins,    ///< bins not sorted by layer, empty, or more than two in a layer
-  kNotFinite,  ///< a number that is not finite
-  kTooMany,    ///< more bins than a tile can hold
-};
-constexpr EnumNames<RestoreStatus, 6> enum_names(RestoreStatus) {
-  return {{{RestoreStatus::kOk, "ok"},
-           {RestoreStatus::kBadIndex, "bad_index"},
-           {RestoreStatus::kBadCells, "bad_cells"},
-           {RestoreStatus::kBadBins, "bad_bins"},
-           {RestoreStatus::kNotFinite, "not_finite"},
-           {RestoreStatus::kTooMany, "too_many"}}};
-}
-
-/// Puts a stored tile into the grid in place of what is there; a state that is not `kOk` changes
-/// nothing.
-[[nodiscard]] RestoreStatus restore_tile(const TileState& state, FusedGrid& grid);
-/// Sets what a grid knows besides its tiles: `window`, `time` and `scans` of a stored snapshot.
-void restore_progress(const MapCellRect& window, double time, std::uint64_t scans, FusedGrid& grid);
 
 /// Memory that a grid holds, bytes.
 struct FusedMemory {

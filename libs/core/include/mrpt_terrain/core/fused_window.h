@@ -19,6 +19,7 @@ struct WindowFrame {
   double x = 0.0;         ///< origin of the window in the map, metres
   double y = 0.0;
   double z = 0.0;
+  double max_height = 0.0;  ///< heights there or above are not read, window frame, metres
 
   [[nodiscard]] MapCell map_cell_of(CellIndex cell) const {
     return {first.i + cell.l, first.j + cell.w};
@@ -31,21 +32,21 @@ struct WindowFrame {
 [[nodiscard]] WindowFrame window_around(const MapLattice& lattice, const GridParams& params,
                                         const Eigen::Vector3d& robot);
 
-/// The cells of a window as the stages of a description take them, with what else is known of each.
+/// What else is known of the cells of a window; one entry per slot.
 struct WindowCells {
-  ElevationGrid grid;             ///< heights and sums in the frame of the window
-  std::vector<float> height;      ///< per slot: robust height of the ground, window frame, metres
-  std::vector<float> variance;    ///< per slot: of the points about it, m^2
-  std::vector<double> last_seen;  ///< per slot: stamp, seconds
-  std::vector<float> clearance;   ///< per slot: height of the lowest overhang over the ground,
-                                  ///< metres; 0 if nothing hangs over
+  std::vector<float> height;      ///< robust height of the ground, window frame, metres
+  std::vector<float> variance;    ///< of the points about it, m^2
+  std::vector<double> last_seen;  ///< stamp, seconds
+  std::vector<float> clearance;  ///< from the ground to the lowest overhang, metres; 0: no overhang
 };
 
-/// Reads the window's cells: slots, sorted row by row, of the observed ones. Heights at or above
-/// `params.max_height` (window frame) and what hangs over are left out; extremes are cut as
-/// `FusedCell::low` and `high`. Cost: the cells of the window.
+/// Reads the window's cells as the stages of a description take them: slots, sorted row by row, of
+/// the observed ones, heights and sums in the frame of the window. Layers that begin at or above
+/// `frame.max_height` and what hangs over are left out; extremes are cut as `FusedCell::low` and
+/// `high`. Cost: the cells of the window.
+/// \param[in,out] grid overwritten; keeps its memory
 /// \param[in,out] cells overwritten; keeps its memory
-void read_window(const FusedSnapshot& map, const WindowFrame& frame, const GridParams& params,
-                 const FusionParams& fusion, WindowCells& cells);
+void read_window(const FusedSnapshot& map, const WindowFrame& frame, const FusionParams& params,
+                 ElevationGrid& grid, WindowCells& cells);
 
 }  // namespace mrpt_terrain

@@ -31,7 +31,8 @@ class TileTree {
   /// alone.
   template <class Visit>
   void for_each(Visit&& visit) const {
-    if (root_) visit_below(*root_, kTreeLevels - 1, TileIndex{}, visit);
+    if (root_)
+      visit_below(static_cast<const TreeNode&>(*root_), kTreeLevels - 1, TileIndex{}, visit);
   }
 
  private:
@@ -55,7 +56,7 @@ class TileTree {
   // Indices count from here in the tree, so that they are not negative.
   static constexpr std::int32_t kBias = 1 << (kTreeShift * kTreeLevels - 1);
 
-  Ref<TreeNode> root_;
+  Ref<SharedNode> root_;
 };
 
 /// What has been let go, kept to be used again: nodes that a snapshot may still hold wait until it
@@ -86,10 +87,9 @@ class TileStore {
   [[nodiscard]] std::size_t spare_bytes() const;
 
  private:
-  Ref<TreeNode> new_node();
   Ref<Tile> new_tile();
   Ref<Tile> copy_of(const Tile& tile);
-  TreeNode& own(Ref<TreeNode>& node);
+  TreeNode& own(Ref<SharedNode>& node);
   std::unique_ptr<BinBlock> new_block();
 
   Recycler<TreeNode> nodes_;
