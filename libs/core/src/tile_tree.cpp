@@ -7,7 +7,7 @@
 namespace mrpt_terrain {
 namespace {
 
-constexpr std::size_t kMostBlocks = kNoBin / kBinsPerBlock;
+constexpr std::size_t kMostBlocks = kMostBins / kBinsPerBlock;
 
 // Number of the child on the way to a tile; `i` and `j` count from the tree's corner.
 std::size_t child_on_way(std::int32_t i, std::int32_t j, int level) {

@@ -76,6 +76,8 @@ struct TileCell {
 /// Block of memory for bins.
 inline constexpr std::size_t kBinsPerBlock = 32;
 using BinBlock = std::array<HeightBin, kBinsPerBlock>;
+/// Bins that a tile can hold: 255 per cell on average.
+inline constexpr std::size_t kMostBins = kNoBin / kBinsPerBlock * kBinsPerBlock;
 
 /// Square of cells with their bins: the unit that snapshots share and that is copied when written
 /// to. `cells` and `blocks` are read through the functions below.
