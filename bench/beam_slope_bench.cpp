@@ -41,7 +41,8 @@ void beam_slope_of_cluster(benchmark::State& state) {
                              scan.description.grid,
                              scan.description.ground,
                              scan.description.clusters,
-                             scan.workspace.points_of};
+                             scan.workspace.points_of,
+                             scan.description.grid.sums};
   BeamSlopeWorkspace workspace;
   Slope slope;
   run_counted(state, [&] { slope = estimate_beam_slope(input, scan.cluster, {}, 1, workspace); });

@@ -97,7 +97,7 @@ Eigen::Vector3f point_at(const PointsView& points, std::size_t i) {
 std::size_t number_of_points(const Estimator& self) {
   double n = 0.0;
   for (const std::int32_t slot : self.slots()) {
-    n += self.input.grid.sums[static_cast<std::size_t>(slot)].n;
+    n += self.input.sums[static_cast<std::size_t>(slot)].n;
   }
   return static_cast<std::size_t>(n);
 }
@@ -105,7 +105,7 @@ std::size_t number_of_points(const Estimator& self) {
 Eigen::Vector3d centre_of(const Estimator& self) {
   MomentSums sums;
   for (const std::int32_t slot : self.slots()) {
-    sums.add(self.input.grid.sums[static_cast<std::size_t>(slot)]);
+    sums.add(self.input.sums[static_cast<std::size_t>(slot)]);
   }
   return moments_from(sums).mean();
 }
@@ -206,7 +206,8 @@ void find_ground_cells(const Estimator& self, std::vector<std::int32_t>& found) 
   for_cells(grid.geometry, self.box, [&](CellIndex, std::size_t id) {
     const Slot slot = grid.slot_of[id];
     if (slot == kUnobserved || (self.workspace.marks[id] & kNear) != 0) return;
-    if (self.input.ground.is_ground(static_cast<std::size_t>(slot))) found.push_back(slot);
+    const auto index = static_cast<std::size_t>(slot);
+    if (self.input.ground.is_ground(index) && self.input.sums[index].n > 0.0) found.push_back(slot);
   });
 }
 
@@ -220,7 +221,7 @@ void sample_ground(const Estimator& self, const Eigen::Vector3d& centre) {
   const std::size_t step = spreading_step(cells.size);
   std::size_t place = 0;
   for (std::size_t k = 0; k < found.size(); k += stride) {
-    const MomentSums& sums = self.input.grid.sums[static_cast<std::size_t>(found[k])];
+    const MomentSums& sums = self.input.sums[static_cast<std::size_t>(found[k])];
     const Eigen::Vector3d mean = Eigen::Vector3d(sums.x, sums.y, sums.z) / sums.n;
     cells.set(place, mean.cast<float>(), self.input.origins.of(0), centre.cast<float>());
     cells.count[place] = std::min(static_cast<float>(sums.n), kMostCount);
@@ -260,7 +261,8 @@ double sorting_error(const Surface& surface, double variance) {
 // where their mean beam meets the plane.
 bool agrees(const Estimator& self, const Surface& surface, Slot slot) {
   const auto index = static_cast<std::size_t>(slot);
-  const MomentSums& sums = self.input.grid.sums[index];
+  const MomentSums& sums = self.input.sums[index];
+  if (sums.n == 0.0) return false;
   const double share = 1.0 / sums.n;
   const Eigen::Vector3d mean = Eigen::Vector3d(sums.x, sums.y, sums.z) * share;
   const Eigen::Vector3d& n = surface.plane.normal;
@@ -297,7 +299,7 @@ double mark_cluster(const Estimator& self, const Surface& surface) {
     const bool good = agrees(self, surface, slot);
     self.workspace.marks[static_cast<std::size_t>(id)] |= good ? kSurface | kSeen : kSeen;
     if (!good) continue;
-    points += grid.sums[index].n;
+    points += self.input.sums[index].n;
     self.workspace.open.push_back(id);
   }
   return points;

@@ -96,6 +96,20 @@ std::optional<Eigen::Vector3d> fit_along_normal(const Moments& inliers) {
 
 double inclination(double normal_z) { return std::acos(std::min(1.0, std::abs(normal_z))); }
 
+// Writes down the plane of that normal through a point, or that there is none.
+void report_plane(const std::optional<Eigen::Vector3d>& normal, const Eigen::Vector3d& through,
+                  Slope& result) {
+  if (!normal) {
+    result.status = FeatureStatus::kDegenerate;
+    return;
+  }
+  result.status = FeatureStatus::kOk;
+  result.normal = *normal;
+  result.offset = -normal->dot(through);
+  result.angle = inclination(normal->z());
+  result.direction = direction_of(*normal);
+}
+
 }  // namespace
 
 double direction_of(const Eigen::Vector3d& normal) {
@@ -130,17 +144,24 @@ Slope estimate_slope(const PointsView& points, IndexRange members, const SlopePa
   const Moments inliers =
       moments_of_inliers(cloud, *best.plane, static_cast<float>(params.inlier_distance));
   const bool steep = inclination(best.plane->c) >= params.vertical_from;
-  const std::optional<Eigen::Vector3d> normal =
-      steep ? fit_along_normal(inliers) : fit_along_z(inliers);
-  if (!normal) {
-    result.status = FeatureStatus::kDegenerate;
+  report_plane(steep ? fit_along_normal(inliers) : fit_along_z(inliers), inliers.mean() + centre,
+               result);
+  return result;
+}
+
+Slope slope_from_moments(const Moments& moments, const SlopeParams& params) {
+  Slope result;
+  result.source = PlaneSource::kMoments;
+  result.points = static_cast<std::int32_t>(moments.n);
+  if (moments.n < 3.0) {
+    result.status = FeatureStatus::kTooFewPoints;
     return result;
   }
-  result.status = FeatureStatus::kOk;
-  result.normal = *normal;
-  result.offset = -normal->dot(inliers.mean() + centre);
-  result.angle = inclination(normal->z());
-  result.direction = direction_of(*normal);
+  result.inliers = result.points;
+  // Which fit is right shows in the direction of least scatter; without one there is no plane.
+  const std::optional<Eigen::Vector3d> upright = fit_along_normal(moments);
+  const bool steep = upright && inclination(upright->z()) >= params.vertical_from;
+  report_plane(upright && !steep ? fit_along_z(moments) : upright, moments.mean(), result);
   return result;
 }
 

@@ -62,6 +62,8 @@ struct BeamSlopeInput {
   const Clusters& clusters;
   /// Per slot: its points. Rows farther than `beam_slope_reach` from the cluster may be empty.
   const IndexRows& points_of_slot;
+  /// Per slot: sums of its points; of a fused grid, those of the scan alone, which may be none.
+  const std::vector<MomentSums>& sums;
 };
 
 /// Scratch memory of `estimate_beam_slope`; `marks` is zero between calls.

@@ -108,6 +108,8 @@ struct DescriptionWorkspace {
   PointSlots point_slots;
   std::vector<Moments> cluster_moments;
   std::vector<std::int32_t> points_wanted;
+  std::vector<std::int32_t> slope_wanted;  ///< fused grids only, like `scan_sums`
+  std::vector<MomentSums> scan_sums;       ///< per slot: of the current scan
   std::vector<TerrainClass> class_of;
   IndexRows points_of;
 };

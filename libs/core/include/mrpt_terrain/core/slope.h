@@ -7,6 +7,7 @@
 
 #include "mrpt_terrain/core/clusters.h"
 #include "mrpt_terrain/core/feature_status.h"
+#include "mrpt_terrain/core/moments.h"
 #include "mrpt_terrain/core/param_info.h"
 #include "mrpt_terrain/core/points.h"
 
@@ -60,10 +61,20 @@ struct SlopeToGround {
   double ground_offset = 0.0;  ///< metres: ground_normal . p + ground_offset = 0 on the ground
 };
 
+/// What a plane was fitted to.
+enum class PlaneSource : std::uint8_t {
+  kPoints = 0,  ///< the points of the scan
+  kMoments,     ///< the moments of fused cells, for want of points
+};
+constexpr EnumNames<PlaneSource, 2> enum_names(PlaneSource) {
+  return {{{PlaneSource::kPoints, "points"}, {PlaneSource::kMoments, "moments"}}};
+}
+
 /// Slope of a cluster (paper, eqs. 5 and 6). The standard deviations are those of method `beam`;
 /// method `paper` has none and leaves them 0.
 struct Slope {
   FeatureStatus status = FeatureStatus::kNotNeeded;
+  PlaneSource source = PlaneSource::kPoints;         ///< kMoments in fused descriptions only
   double angle = 0.0;                                ///< alpha_s, radians, 0 to pi/2
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, z >= 0
   double offset = 0.0;           ///< metres: normal . p + offset = 0 on the plane
@@ -93,5 +104,9 @@ struct SlopeWorkspace {
 [[nodiscard]] Slope estimate_slope(const PointsView& points, IndexRange members,
                                    const SlopeParams& params, std::uint64_t stream,
                                    SlopeWorkspace& workspace);
+
+/// Plane by least squares through all points of a set, of which only the moments are left: eq. (5),
+/// or along the normal if it is steeper than `vertical_from`. Outliers cannot be told apart.
+[[nodiscard]] Slope slope_from_moments(const Moments& moments, const SlopeParams& params);
 
 }  // namespace mrpt_terrain

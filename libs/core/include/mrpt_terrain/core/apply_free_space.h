@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+
+#include "mrpt_terrain/core/free_space.h"
+#include "mrpt_terrain/core/fused_grid.h"
+
+namespace mrpt_terrain {
+
+/// What free space did to the grid.
+struct FreeSpaceCounts {
+  std::size_t bins_removed = 0;
+  std::size_t points_removed = 0;
+  std::size_t bins_guarded = 0;  ///< lie in free layers and were kept
+};
+
+/// Forgets heights where later rays have found empty space, and remembers the free space above the
+/// ground of each cell.
+///
+/// A bin is looked at if its layer is free in `free` and it was not hit since `free.time`. From the
+/// bottom of the cell up, with the *ground* the lowest bin that stays:
+/// 1. Without ground below, it goes only if the free span begins `guard_height` or more below its
+///    lowest point: rays went underneath. Rays that graze a surface pass above it, never below.
+/// 2. If it reaches higher than `guard_height` above the lowest point of the ground, it goes, if
+///    the free span begins in a layer below it, or within `guard_height` above the ground. (A ray
+///    that grazes the roof of a car frees the layer of the roof, but none inside the car.)
+/// 3. Otherwise, close above the ground like a curb, it goes once `guard_scans` scans have hit the
+///    cell, freed the layer, and not hit it.
+/// \param free same lattice as the grid; cells outside the grid are ignored
+FreeSpaceCounts apply_free_space(const FreeSpaceGrid& free, const FusionParams& params,
+                                 FusedGrid& grid);
+
+}  // namespace mrpt_terrain

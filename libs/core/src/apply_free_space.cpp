@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/core/apply_free_space.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "fused_access.h"
+
+namespace mrpt_terrain {
+namespace {
+
+using Access = FusedGridAccess;
+
+/// What becomes of a bin.
+enum class Verdict : std::uint8_t {
+  kUntouched,  // nothing says that its layer is free
+  kGuarded,    // stays in spite of it
+  kDoubted,    // the same, and the scan counts against it
+  kRemoved,
+};
+
+/// One cell with its free layers.
+struct Column {
+  const MapLattice& lattice;
+  const FusionParams& params;
+  double time;
+  const LayerSpan* begin;
+  const LayerSpan* end;
+
+  [[nodiscard]] const LayerSpan* span_at(std::int32_t layer) const {
+    const LayerSpan* span =
+        std::find_if(begin, end, [layer](LayerSpan s) { return layer < s.high; });
+    return span != end && span->contains(layer) ? span : nullptr;
+  }
+};
+
+/// The lowest bin that stays.
+struct Ground {
+  bool found = false;
+  double z_min = 0.0;
+  std::int32_t layer = 0;
+};
+
+bool is_hit(const Tile& tile, std::size_t place, double time) {
+  bool hit = false;
+  for_each_bin(tile, place, [&](const HeightBin& bin) { hit |= bin.last_seen >= time; });
+  return hit;
+}
+
+// A layer was hit if its older or its newer bin was.
+bool is_layer_hit(const Tile& tile, const HeightBin& bin, double time) {
+  if (bin.last_seen >= time) return true;
+  return bin.next != kNoBin && tile.bin(bin.next).layer == bin.layer &&
+         tile.bin(bin.next).last_seen >= time;
+}
+
+Verdict judge(const Column& column, const HeightBin& bin, bool cell_hit, const Ground& ground) {
+  const LayerSpan* free = column.span_at(bin.layer);
+  if (free == nullptr) return Verdict::kUntouched;
+  const double guard = column.params.guard_height;
+  const double bottom = column.lattice.bottom_of(bin.layer);
+  const double free_from = column.lattice.bottom_of(free->low);
+  if (!ground.found) {  // rule 1
+    const bool undercut = free_from <= bottom + double{bin.z_min} - guard;
+    return undercut ? Verdict::kRemoved : Verdict::kGuarded;
+  }
+  if (bottom + double{bin.z_max} > ground.z_min + guard) {  // rule 2
+    const bool passed = free->low < bin.layer || free_from <= ground.z_min + guard;
+    return passed ? Verdict::kRemoved : Verdict::kGuarded;
+  }
+  const int limit = column.params.guard_scans;  // rule 3
+  if (bin.layer == ground.layer || limit == 0 || !cell_hit) return Verdict::kGuarded;
+  return bin.freed + 1 >= limit ? Verdict::kRemoved : Verdict::kDoubted;
+}
+
+// Calls visit(link, verdict) for the bins of a cell from the bottom up; `visit` may remove the bin
+// that the link leads to. Returns the ground that stays.
+template <class AnyTile, class Visit>
+Ground judge_all(const Column& column, AnyTile& tile, std::size_t place, Visit&& visit) {
+  const bool cell_hit = is_hit(tile, place, column.time);
+  Ground ground;
+  auto* link = &tile.cells[place].first;
+  while (*link != kNoBin) {
+    auto& bin = tile.bin(*link);
+    const Verdict verdict = is_layer_hit(tile, bin, column.time)
+                                ? Verdict::kUntouched
+                                : judge(column, bin, cell_hit, ground);
+    if (verdict != Verdict::kRemoved && !ground.found) {
+      ground = {true, column.lattice.bottom_of(bin.layer) + double{bin.z_min}, bin.layer};
+    }
+    visit(link, verdict);
+    if (verdict != Verdict::kRemoved) link = &bin.next;
+  }
+  return ground;
+}
+
+// Of two stretches of free space, the lower one if a robot fits in, the longer one otherwise.
+LayerSpan better(LayerSpan lower, LayerSpan upper, std::int32_t enough) {
+  if (lower.layers() >= enough) return lower;
+  return upper.layers() > lower.layers() ? upper : lower;
+}
+
+// Free space above the ground: what is known already, and what is new.
+LayerSpan free_above(const Column& column, std::int32_t ground, LayerSpan known) {
+  const auto enough =
+      static_cast<std::int32_t>(column.params.clearance / column.lattice.layer_height());
+  LayerSpan best;
+  for (const LayerSpan* span = column.begin; span != column.end; ++span) {
+    if (span->high <= ground) continue;
+    best = best.empty() ? *span : better(best, *span, enough);
+  }
+  if (known.empty() || known.high <= ground) return best;
+  if (best.empty()) return known;
+  if (best.low <= known.high && known.low <= best.high) {
+    return {std::min(best.low, known.low), std::max(best.high, known.high)};
+  }
+  return best.low < known.low ? better(best, known, enough) : better(known, best, enough);
+}
+
+// Whether the rays would change anything in the cell, so that tiles are copied only then.
+bool changes(const Column& column, const Tile& tile, std::size_t place, FreeSpaceCounts& counts) {
+  bool any = false;
+  std::size_t guarded = 0;
+  const Ground ground = judge_all(column, tile, place, [&](const BinIndex*, Verdict verdict) {
+    any |= verdict == Verdict::kDoubted || verdict == Verdict::kRemoved;
+    guarded += verdict == Verdict::kDoubted || verdict == Verdict::kGuarded ? 1U : 0U;
+  });
+  counts.bins_guarded += guarded;
+  const LayerSpan known = tile.cells[place].free;
+  return any || (ground.found && free_above(column, ground.layer, known) != known);
+}
+
+void apply(const Column& column, Tile& tile, std::size_t place, FreeSpaceCounts& counts) {
+  const Ground ground = judge_all(column, tile, place, [&](BinLink link, Verdict verdict) {
+    HeightBin& bin = tile.bin(*link);
+    if (verdict == Verdict::kDoubted) ++bin.freed;
+    if (verdict != Verdict::kRemoved) return;
+    ++counts.bins_removed;
+    counts.points_removed += bin.count;
+    remove_bin(tile, link);
+  });
+  LayerSpan& known = tile.cells[place].free;
+  known = ground.found ? free_above(column, ground.layer, known) : LayerSpan{};
+}
+
+}  // namespace
+
+FreeSpaceCounts apply_free_space(const FreeSpaceGrid& free, const FusionParams& params,
+                                 FusedGrid& grid) {
+  assert(free.lattice == grid.now().lattice);
+  FreeSpaceCounts counts;
+  const Tile* tile = nullptr;
+  TileIndex index;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const TileIndex next = tile_of(free.cell[k]);
+    if (k == 0 || next != index) tile = grid.now().tiles.find(next);
+    index = next;
+    const std::size_t place = place_in_tile(free.cell[k]);
+    if (tile == nullptr || tile->cells[place].first == kNoBin) continue;
+    const Column column{free.lattice, params, free.time, free.begin_of(k), free.end_of(k)};
+    if (!changes(column, *tile, place, counts)) continue;
+    Tile& writable = Access::writable(grid, index);
+    apply(column, writable, place, counts);
+    tile = &writable;
+  }
+  return counts;
+}
+
+}  // namespace mrpt_terrain

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "mrpt_terrain/core/describe.h"
+
+namespace mrpt_terrain {
+
+/// What the stages after the grid look at; the grid itself is in the `Description`, the slots of
+/// the points are in the workspace.
+struct StageInput {
+  const ScanView& scan;  ///< frame of the grid
+  const DescriptionParams& params;
+  StageListener* listener = nullptr;
+  /// Null if the grid is made of the points of `scan`. Otherwise it is a fused one: the share of a
+  /// cluster's cells that the scan must hit for a slope from points.
+  const double* points_cover = nullptr;
+
+  [[nodiscard]] bool is_fused() const { return points_cover != nullptr; }
+};
+
+/// The stages after the grid, in the order of the paper: ground, clusters, features, classes,
+/// labels.
+void describe_cells(const StageInput& stage, DescriptionWorkspace& workspace,
+                    Description& description);
+
+}  // namespace mrpt_terrain

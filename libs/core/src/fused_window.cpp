@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/core/fused_window.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "mrpt_terrain/core/fused_cell.h"
+
+namespace mrpt_terrain {
+namespace {
+
+void prepare(const GridGeometry& geometry, ElevationGrid& grid, WindowCells& cells) {
+  const auto size = static_cast<std::size_t>(geometry.array_size());
+  if (grid.geometry != geometry || grid.slot_of.size() != size) {
+    grid.geometry = geometry;
+    grid.slot_of.assign(size, kUnobserved);
+  } else {
+    for (const CellId id : grid.cell)
+      grid.slot_of[static_cast<std::size_t>(value_of(id))] = kUnobserved;
+  }
+  grid.cell.clear();
+  grid.h_min.clear();
+  grid.h_max.clear();
+  grid.h_mean.clear();
+  grid.sums.clear();
+  cells.height.clear();
+  cells.variance.clear();
+  cells.last_seen.clear();
+  cells.clearance.clear();
+}
+
+// Sums about the origin of the window.
+MomentSums sums_of(const Moments& m, const WindowFrame& frame) {
+  const double x = m.mean_x - frame.x;
+  const double y = m.mean_y - frame.y;
+  const double z = m.mean_z - frame.z;
+  MomentSums s;
+  s.n = m.n;
+  s.x = m.n * x;
+  s.y = m.n * y;
+  s.z = m.n * z;
+  s.xx = m.m_xx + s.x * x;
+  s.xy = m.m_xy + s.x * y;
+  s.xz = m.m_xz + s.x * z;
+  s.yy = m.m_yy + s.y * y;
+  s.yz = m.m_yz + s.y * z;
+  s.zz = m.m_zz + s.z * z;
+  return s;
+}
+
+void append(const FusedCell& cell, const WindowFrame& frame, CellId id, ElevationGrid& grid,
+            WindowCells& cells) {
+  grid.slot_of[static_cast<std::size_t>(value_of(id))] = static_cast<Slot>(grid.cell.size());
+  grid.cell.push_back(id);
+  grid.h_min.push_back(static_cast<float>(cell.low - frame.z));
+  grid.h_max.push_back(static_cast<float>(cell.high - frame.z));
+  grid.h_mean.push_back(static_cast<float>(cell.moments.mean_z - frame.z));
+  grid.sums.push_back(sums_of(cell.moments, frame));
+  cells.height.push_back(static_cast<float>(cell.height - frame.z));
+  cells.variance.push_back(static_cast<float>(cell.variance));
+  cells.last_seen.push_back(cell.last_seen);
+  cells.clearance.push_back(cell.overhung ? static_cast<float>(cell.overhang - cell.height) : 0.0F);
+}
+
+}  // namespace
+
+WindowFrame window_around(const MapLattice& lattice, const GridParams& params,
+                          const Eigen::Vector3d& robot) {
+  WindowFrame frame;
+  const double c = lattice.cell_size();
+  frame.geometry = GridGeometry(params.length, params.width, c);
+  const bool found =
+      lattice.cell_at(robot.x() - frame.geometry.half_length() + 0.5 * c,
+                      robot.y() - frame.geometry.half_width() + 0.5 * c, frame.first);
+  assert(found);
+  (void)found;
+  frame.x = frame.first.i * c + frame.geometry.half_length();
+  frame.y = frame.first.j * c + frame.geometry.half_width();
+  frame.z = robot.z();
+  frame.max_height = params.max_height;
+  return frame;
+}
+
+void read_window(const FusedSnapshot& map, const WindowFrame& frame, const FusionParams& params,
+                 ElevationGrid& grid, WindowCells& cells) {
+  prepare(frame.geometry, grid, cells);
+  const CellReader reader{map, params, frame.z + frame.max_height};
+  const GridGeometry& geometry = frame.geometry;
+  FusedCell cell;
+  for (int l = 0; l < geometry.cells_l(); ++l) {
+    const Tile* tile = nullptr;
+    for (int w = 0; w < geometry.cells_w(); ++w) {
+      const MapCell where = frame.map_cell_of({l, w});
+      const TileIndex index = tile_of(where);
+      if (w == 0 || where.j % kTileSide == 0) tile = map.tiles.find(index);
+      if (tile == nullptr || !read_cell(reader, index, *tile, place_in_tile(where), cell)) continue;
+      append(cell, frame, geometry.id_of({l, w}), grid, cells);
+    }
+  }
+}
+
+}  // namespace mrpt_terrain
