@@ -61,12 +61,12 @@ TEST_P(RealScans, OracleTheTreeIsThatOfOctomap) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kitti, RealScans,
-                         testing::Values(RealCase{"kitti_raw_0001", 4, 1, 0.2, -1.0, false},
-                                         RealCase{"kitti_raw_0001", 3, 15, 0.2, -1.0, true},
-                                         RealCase{"kitti_raw_0001", 2, 1, 0.1, 20.0, false},
-                                         RealCase{"kitti_raw_0001", 1, 1, 0.1, -1.0, true},
-                                         RealCase{"kitti_00", 4, 1, 0.2, 10.0, false},
-                                         RealCase{"kitti_00", 2, 5, 0.2, -1.0, true},
+                         testing::Values(RealCase{"kitti_raw_0001", 2, 1, 0.2, -1.0, false},
+                                         RealCase{"kitti_raw_0001", 2, 15, 0.2, -1.0, true},
+                                         RealCase{"kitti_raw_0001", 1, 1, 0.1, 20.0, false},
+                                         RealCase{"kitti_raw_0001", 1, 1, 0.1, 40.0, true},
+                                         RealCase{"kitti_00", 3, 1, 0.2, 10.0, false},
+                                         RealCase{"kitti_00", 2, 5, 0.25, -1.0, true},
                                          RealCase{"kitti_00", 1, 1, 0.1, 20.0, true}));
 
 /// The VLP-16 scan of Debian's mrpt-common in the frame of the sensor; empty if it is missing.
@@ -157,6 +157,7 @@ TEST(InsertScan, OracleFuzzOfScansGivesTheTreesOfOctomap) {
 
 /// What `insert_scan` promises for several origins, cell by cell.
 void insert_by_brute_force(const OctreeScan& scan, const InsertionOptions& options, OcTree& tree) {
+  const test::QuietOctomap quiet;
   octomap::KeySet free, occupied;
   octomap::KeyRay ray;
   for (std::size_t k = 0; k < scan.x.size(); ++k) {
@@ -200,7 +201,7 @@ TEST(InsertScan, OracleFuzzWithSeveralOriginsUpdatesEachCellOnce) {
 TEST(InsertScan, AFlippedTieRuleIsNoticed) {
   CollectionWorkspace workspace;
   std::size_t different = 0;
-  for (std::uint32_t seed = 0; seed < 50; ++seed) {
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
     RandomGenerator random(seed);
     OcTree own = test::random_tree(random);
     OcTree reference(own);
@@ -296,7 +297,7 @@ TEST(InsertScan, LiteralPointsThatAreDroppedAreCounted) {
   EXPECT_EQ(tree.getNumLeafNodes(), 6U);
   const auto cut = insert_scan(scan.ends(), scan.starts(), {1.0, false}, workspace, tree);
   EXPECT_EQ(cut.rays, 3U);
-  EXPECT_NE(tree.search(0.95F, 0.05F, 0.05F), nullptr);
+  EXPECT_NE(tree.search(0.85F, 0.05F, 0.05F), nullptr);
 }
 
 TEST(InsertScan, DegenerateScans) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
 #include <octomap/Pointcloud.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -29,6 +31,26 @@ inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;
 #endif
+
+/// OctoMap warns of rays that it drops and reports what it writes on standard error; not while one
+/// of these lives.
+class QuietOctomap {
+ public:
+  QuietOctomap() : kept_(dup(STDERR_FILENO)) {
+    const int nowhere = open("/dev/null", O_WRONLY);
+    dup2(nowhere, STDERR_FILENO);
+    close(nowhere);
+  }
+  ~QuietOctomap() {
+    dup2(kept_, STDERR_FILENO);
+    close(kept_);
+  }
+  QuietOctomap(const QuietOctomap&) = delete;
+  QuietOctomap& operator=(const QuietOctomap&) = delete;
+
+ private:
+  int kept_;
+};
 
 /// A scan that owns its points, metres, frame of the tree.
 struct OctreeScan {
@@ -71,12 +93,14 @@ inline octomap::Pointcloud cloud_of(const OctreeScan& scan, const octree::Insert
 /// OctoMap's insertion of a scan with one origin.
 inline void insert_by_octomap(const OctreeScan& scan, const octree::InsertionOptions& options,
                               octomap::OcTree& tree) {
+  const QuietOctomap quiet;
   tree.insertPointCloud(cloud_of(scan, options, tree), scan.origin(0), options.max_range, false,
                         options.discretize);
 }
 
 /// Everything that OctoMap stores of a tree.
 inline std::string bytes_of(const octomap::OcTree& tree) {
+  const QuietOctomap quiet;
   std::ostringstream data, binary;
   tree.writeData(data);
   tree.writeBinaryConst(binary);
@@ -136,7 +160,8 @@ inline float pick(RandomGenerator& random, std::initializer_list<float> values) 
 /// saturate after one to many scans.
 inline octomap::OcTree random_tree(RandomGenerator& random) {
   octomap::OcTree tree(0.02 * std::pow(100.0, random.uniform()));
-  if (random.below(3) == 0) tree.setResolution(pick(random, {0.05F, 0.1F, 0.25F, 0.5F, 1.0F}));
+  // Ties need borders that a float can hold.
+  if (random.below(2) == 0) tree.setResolution(pick(random, {0.1F, 0.125F, 0.25F, 0.5F, 1.0F}));
   if (random.below(4) == 0) return tree;
   tree.setProbHit(0.5 + 0.49 * random.uniform());
   tree.setProbMiss(0.5 - 0.49 * random.uniform());
@@ -172,7 +197,7 @@ inline OctreeScan random_scan(RandomGenerator& random, double resolution, std::u
   for (std::uint32_t k = 0; k < points; ++k) {
     const std::uint32_t number = random.below(origins);
     std::array<float, 3> end = scan.origins[number];
-    const std::uint32_t sort = random.below(16);
+    const std::uint32_t sort = random.below(10);
     const std::uint32_t axis = random.below(3);
     const float step = random_coordinate(random, resolution, reach, snap);
     if (sort == 0) {
