@@ -25,8 +25,8 @@ mrpt::maps::CSimplePointsMap::Ptr CTerrainMap::as_points_map() const {
   const Points& points = now->points;
   map->reserve(points.size());
   for (std::size_t k = 0; k < points.size(); ++k) {
-    const Eigen::Vector3f window(points.x[k], points.y[k], points.z[k]);
-    const Eigen::Vector3d p = now->T_map_window * window.cast<double>();
+    const Eigen::Vector3f robot(points.x[k], points.y[k], points.z[k]);
+    const Eigen::Vector3d p = now->T_map_robot * robot.cast<double>();
     if (!p.allFinite()) continue;
     map->insertPoint(static_cast<float>(p.x()), static_cast<float>(p.y()),
                      static_cast<float>(p.z()));

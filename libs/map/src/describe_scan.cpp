@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <utility>
+
 #include "map_state.h"
 
 namespace mrpt_terrain {
@@ -21,8 +23,31 @@ mrpt::poses::CPose3D pose_of(const Eigen::Isometry3d& T) {
   return mrpt::poses::CPose3D(matrix);
 }
 
+namespace {
+
+BeamOrigins origins_of(const io::Scan& scan) {
+  return {scan.ray_origins.empty() ? nullptr : scan.ray_origins.data(),
+          scan.origin_of.empty() ? nullptr : scan.origin_of.data()};
+}
+
+void describe_fused_window(const io::Scan& scan, double time, FusionHalf& fusion,
+                           const MapParams& params, TerrainSnapshot& snapshot) {
+  const CurrentScan current{
+      {scan.points.view(), snapshot.T_map_robot, time}, origins_of(scan), scan.ray_origins.size()};
+  FusedDescription result;
+  describe_fused(fusion.grid.now(), current, {params.description, fusion.params}, fusion.describing,
+                 result);
+  snapshot.description = std::move(result.description);
+  snapshot.window_cells = std::move(result.cells);
+  snapshot.T_map_window = Eigen::Translation3d(result.frame.x, result.frame.y, result.frame.z);
+  snapshot.fused = fusion.grid.snapshot();
+  snapshot.fusion = fusion.params;
+}
+
+}  // namespace
+
 std::shared_ptr<TerrainSnapshot> describe_scan(const io::Scan& scan,
-                                               const Eigen::Isometry3d& T_map_robot,
+                                               const Eigen::Isometry3d& T_map_robot, double time,
                                                const MapParams& params, MapWriter& writer) {
   auto snapshot = std::make_shared<TerrainSnapshot>();
   snapshot->stamp = scan.stamp;
@@ -31,10 +56,12 @@ std::shared_ptr<TerrainSnapshot> describe_scan(const io::Scan& scan,
   snapshot->points = scan.points;
   snapshot->ray_origins = scan.ray_origins;
   snapshot->origin_of = scan.origin_of;
-  const BeamOrigins origins{scan.ray_origins.empty() ? nullptr : scan.ray_origins.data(),
-                            scan.origin_of.empty() ? nullptr : scan.origin_of.data()};
-  describe({scan.points.view(), origins}, params.description, writer.workspace,
-           snapshot->description);
+  if (writer.fusion) {
+    describe_fused_window(scan, time, *writer.fusion, params, *snapshot);
+  } else {
+    describe({scan.points.view(), origins_of(scan)}, params.description, writer.workspace,
+             snapshot->description);
+  }
   compute_cell_costs(snapshot->description.grid, params.robot, writer.costs, snapshot->costs);
   return snapshot;
 }

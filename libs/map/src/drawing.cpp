@@ -44,11 +44,15 @@ void draw(const CTerrainMap& map, const MapRenderParams& render,
   if (render.cells) {
     window->insert(view::make_cells(now->description.grid, colours_of(*now, render.colouring)));
   }
-  if (render.points) window->insert(view::make_points(now->description, now->points.view()));
   if (render.clusters) {
     window->insert(view::make_clusters(now->description, kMostBoxes, kMostLabels));
   }
   objects.insert(window);
+  if (render.points) {
+    auto points = view::make_points(now->description, now->points.view());
+    points->setPose(pose_of(now->T_map_robot));
+    objects.insert(points);
+  }
   if (!render.octree) return;
   auto voxels = map.as_voxels();
   voxels->showVoxels(mrpt::opengl::VOXEL_SET_FREESPACE, false);

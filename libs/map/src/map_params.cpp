@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "mrpt_terrain/params/document.h"
 #include "mrpt_terrain/params/ini.h"
@@ -48,6 +49,18 @@ Section joined_section(const std::string& name, const char* meaning, Params&... 
   return section;
 }
 
+/// Fields that the map gives a fused grid by itself.
+Section fusion_section(const std::string& name, FusionParams& fusion) {
+  Section section = joined_section(name, "How scans are fused", fusion);
+  const auto is_given = [](const Field& field) {
+    return std::string(field.info.key) == "cell_size" ||
+           std::string(field.info.key) == "layer_height";
+  };
+  std::vector<Field>& fields = section.fields;
+  fields.erase(std::remove_if(fields.begin(), fields.end(), is_given), fields.end());
+  return section;
+}
+
 std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -82,11 +95,19 @@ params::Document document_of(const mrpt::config::CConfigFileBase& config,
 
 }  // namespace
 
+FusionParams fusion_of(const MapParams& params) {
+  FusionParams fusion = params.fusion;
+  fusion.cell_size = params.description.grid.cell_size;
+  fusion.layer_height = params.creation.octree_resolution;
+  return fusion;
+}
+
 std::vector<Section> map_sections(const std::string& prefix, MapParams& params) {
   DescriptionParams& description = params.description;
   std::vector<Section> sections{
       joined_section(prefix + "_creationOpts", "The map itself", params.creation, description.grid),
       joined_section(prefix + "_insertOpts", "How observations enter", params.input, params.octree),
+      fusion_section(prefix + "_fusion", params.fusion),
       joined_section(prefix + "_likelihoodOpts", "How well a scan fits", params.likelihood),
       joined_section(prefix + "_renderOpts", "What 3D views show", params.render),
       joined_section(prefix + "_robot", "The robot that costs are for", params.robot)};
@@ -123,6 +144,12 @@ void check_together(const MapParams& params, const std::string& source) {
   const GridParams& grid = params.description.grid;
   const double cells = (grid.length / grid.cell_size) * (grid.width / grid.cell_size);
   refuse(cells > kMostCells, "cell_size: makes more than a hundred million cells");
+  const double voxels = grid.cell_size / params.creation.octree_resolution;
+  const bool whole = std::abs(voxels - std::round(voxels)) < 1e-6 && voxels > 0.5 && voxels < 64.5;
+  refuse(
+      params.creation.fusion == Fusion::kRolling && params.creation.octree && !whole,
+      "octree_resolution: must go into cell_size 1 to 64 times where scans are fused, so that the "
+      "OctoMap can tell which heights of a cell are free");
   if (problems.empty()) return;
   std::string text;
   for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;

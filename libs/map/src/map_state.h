@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "fusion_half.h"
 #include "mrpt_terrain/core/describe.h"
 #include "mrpt_terrain/map/terrain_map.h"
 #include "octree_half.h"
@@ -16,11 +17,13 @@ namespace mrpt_terrain {
 
 /// What one writer works with.
 struct MapWriter {
+  std::unique_ptr<FusionHalf> fusion;  ///< null: each scan by itself
   io::SensorPoints sensor_points;
   io::Scan scan;
   DescriptionWorkspace workspace;
   CostWorkspace costs;
   std::uint64_t next_identity = 1;
+  double time = 0.0;  ///< of the last scan, seconds; goes on where scans have no stamps
   std::string refusal;
 };
 
@@ -53,11 +56,12 @@ struct CTerrainMap::State {
 [[nodiscard]] Eigen::Isometry3d isometry_of(const mrpt::poses::CPose3D& pose);
 [[nodiscard]] mrpt::poses::CPose3D pose_of(const Eigen::Isometry3d& T);
 
-/// Describes a scan and computes its costs: all of a snapshot but its revision and the identities
-/// of its clusters.
+/// Describes a scan, or the cells that it was fused into, and computes the costs: all of a snapshot
+/// but its revision and the identities of its clusters.
+/// \param time of the scan, seconds
 [[nodiscard]] std::shared_ptr<TerrainSnapshot> describe_scan(const io::Scan& scan,
                                                              const Eigen::Isometry3d& T_map_robot,
-                                                             const MapParams& params,
+                                                             double time, const MapParams& params,
                                                              MapWriter& writer);
 
 /// Whether a cost says something.

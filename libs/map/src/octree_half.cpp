@@ -1,10 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "octree_half.h"
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
+#include "mrpt_terrain/octree/trim_tree.h"
+
 namespace mrpt_terrain {
+namespace {
+
+int voxels_per_cell(const MapLattice& lattice) {
+  return static_cast<int>(std::lround(lattice.cell_size() / lattice.layer_height()));
+}
+
+/// OctoMap counts voxels from the middle of its range.
+std::uint16_t key_of(std::int32_t voxel) {
+  return static_cast<std::uint16_t>(std::clamp(voxel + 0x8000, 0, 0xFFFF));
+}
+
+/// Whether all voxels of a layer of a cell are known to be free.
+bool is_free(const octomap::OcTree& tree, MapCell cell, std::int32_t layer, int voxels) {
+  for (int x = 0; x < voxels; ++x) {
+    for (int y = 0; y < voxels; ++y) {
+      const octomap::OcTreeKey key(key_of(cell.i * voxels + x), key_of(cell.j * voxels + y),
+                                   key_of(layer));
+      const octomap::OcTreeNode* node = tree.search(key);
+      if (node == nullptr || tree.isNodeOccupied(node)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
 
 OctreeHalf::OctreeHalf(const MapCreationParams& creation, const OctreeInsertParams& insert)
     : params_(insert), tree_(creation.octree_resolution) {
@@ -40,7 +69,35 @@ void OctreeHalf::insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_rob
                                          params_.discretize};
   const std::lock_guard lock(mutex_);
   copy_.reset();
-  octree::insert_scan({x_.data(), y_.data(), z_.data(), n}, origins, options, workspace_, tree_);
+  octree::insert_scan({x_.data(), y_.data(), z_.data(), n}, origins, options, workspace_, tree_,
+                      &freed_);
+}
+
+void OctreeHalf::find_free_space(const MapLattice& lattice,
+                                 const std::vector<ColumnRequest>& columns, double time,
+                                 FreeSpaceGrid& grid) const {
+  const int voxels = voxels_per_cell(lattice);
+  grid.clear();
+  grid.lattice = lattice;
+  grid.time = time;
+  for (const ColumnRequest& column : columns) {
+    bool named = false;
+    for (std::int32_t layer = column.layers.low; layer < column.layers.high; ++layer) {
+      if (!is_free(tree_, column.cell, layer, voxels)) continue;
+      if (!named) grid.begin_cell(column.cell);
+      named = true;
+      grid.add_span({layer, layer + 1});
+    }
+  }
+}
+
+void OctreeHalf::trim(const MapLattice& lattice, const MapCellRect& window) {
+  const int voxels = voxels_per_cell(lattice);
+  const octree::CellWindow keys{
+      {key_of(window.low.i * voxels), key_of(window.low.j * voxels), 0},
+      {key_of(window.high.i * voxels - 1), key_of(window.high.j * voxels - 1), 0xFFFF}};
+  const std::lock_guard lock(mutex_);
+  if (octree::trim_tree(keys, tree_).removed != 0) copy_.reset();
 }
 
 std::shared_ptr<const octomap::OcTree> OctreeHalf::copy() const {

@@ -11,11 +11,19 @@
 #include <string>
 #include <vector>
 
+#include "mrpt_terrain/core/free_space.h"
+#include "mrpt_terrain/core/map_lattice.h"
 #include "mrpt_terrain/io/scan.h"
 #include "mrpt_terrain/map/map_params.h"
 #include "mrpt_terrain/octree/insert_scan.h"
 
 namespace mrpt_terrain {
+
+/// Layers of a cell that somebody wants to know about.
+struct ColumnRequest {
+  MapCell cell;
+  LayerSpan layers;
+};
 
 /// The OctoMap of a terrain map. One thread writes; others get copies, which are made once per
 /// change.
@@ -28,6 +36,17 @@ class OctreeHalf {
   /// Inserts the rays of a scan.
   /// \param T_map_robot pose of the frame of the scan's points
   void insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot);
+  /// Voxels that the last insertion freed: those that had been occupied before.
+  [[nodiscard]] const std::vector<octree::FreedCube>& freed() const { return freed_; }
+
+  /// Says which of the layers are free.
+  /// \param columns sorted by cell, each cell once
+  /// \param[in,out] grid overwritten
+  void find_free_space(const MapLattice& lattice, const std::vector<ColumnRequest>& columns,
+                       double time, FreeSpaceGrid& grid) const;
+
+  /// Removes all voxels over cells outside a window.
+  void trim(const MapLattice& lattice, const MapCellRect& window);
 
   [[nodiscard]] std::shared_ptr<const octomap::OcTree> copy() const;
 
@@ -41,6 +60,7 @@ class OctreeHalf {
   std::vector<float> x_, y_, z_;               ///< ends of a scan's rays, map frame
   std::vector<std::array<float, 3>> origins_;  ///< and their origins
   octree::InsertionWorkspace workspace_;
+  std::vector<octree::FreedCube> freed_;
   mutable std::mutex mutex_;
   octomap::OcTree tree_;
   mutable std::shared_ptr<const octomap::OcTree> copy_;  ///< of `tree_` as it is; else null

@@ -9,9 +9,11 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 
 #include "blob.h"
 #include "map_state.h"
+#include "mrpt_terrain/core/tile_state.h"
 #include "mrpt_terrain/params/ini.h"
 
 IMPLEMENTS_SERIALIZABLE(CTerrainMap, mrpt::maps::CMetricMap, mrpt_terrain)
@@ -57,6 +59,30 @@ Eigen::Isometry3d get_pose(BlobReader& blob) {
   return T;
 }
 
+// Field by field: the struct has padding, whose bytes mean nothing.
+template <class Self, class Visit>
+void visit_bin(Self& bin, Visit&& visit) {
+  visit(bin.last_seen);
+  visit(bin.layer);
+  visit(bin.count);
+  for (auto* value : {&bin.z_min, &bin.z_max, &bin.mean_x, &bin.mean_y, &bin.mean_z, &bin.m_xx,
+                      &bin.m_xy, &bin.m_xz, &bin.m_yy, &bin.m_yz, &bin.m_zz}) {
+    visit(*value);
+  }
+  visit(bin.scans);
+  visit(bin.freed);
+}
+
+void put_bin(const HeightBin& bin, BlobWriter& blob) {
+  visit_bin(bin, [&blob](const auto& value) { blob.put(value); });
+}
+
+HeightBin get_bin(BlobReader& blob) {
+  HeightBin bin;
+  visit_bin(bin, [&blob](auto& value) { value = blob.get<std::decay_t<decltype(value)>>(); });
+  return bin;
+}
+
 void put_scan(const TerrainSnapshot& snapshot, BlobWriter& blob) {
   blob.put(snapshot.stamp);
   put_pose(snapshot.T_map_robot, blob);
@@ -81,6 +107,56 @@ Eigen::Isometry3d get_scan(BlobReader& blob, io::Scan& scan) {
     throw std::runtime_error("the arrays of its scan do not fit together");
   }
   return T_map_robot;
+}
+
+void put_tiles(const FusedSnapshot& fused, BlobWriter& blob) {
+  blob.put(fused.window);
+  blob.put(fused.time);
+  blob.put(fused.scans);
+  std::uint64_t tiles = 0;
+  fused.tiles.for_each([&](TileIndex, const Tile&) { ++tiles; });
+  blob.put(tiles);
+  TileState state;
+  fused.tiles.for_each([&](TileIndex index, const Tile& tile) {
+    save_tile(index, tile, state);
+    blob.put(state.tile);
+    blob.put(static_cast<std::uint64_t>(state.cells.size()));
+    for (const TileState::Cell& cell : state.cells) {
+      blob.put(cell.place);
+      blob.put(cell.bins);
+      blob.put(cell.free);
+    }
+    blob.put(static_cast<std::uint64_t>(state.bins.size()));
+    for (const HeightBin& bin : state.bins) put_bin(bin, blob);
+  });
+}
+
+void get_tile(BlobReader& blob, TileState& state) {
+  state.tile = blob.get<TileIndex>();
+  state.cells.clear();
+  state.bins.clear();
+  for (auto n = blob.get<std::uint64_t>(); n > 0; --n) {
+    TileState::Cell& cell = state.cells.emplace_back();
+    cell.place = blob.get<std::uint8_t>();
+    cell.bins = blob.get<std::uint16_t>();
+    cell.free = blob.get<LayerSpan>();
+  }
+  for (auto n = blob.get<std::uint64_t>(); n > 0; --n) state.bins.push_back(get_bin(blob));
+}
+
+void get_tiles(BlobReader& blob, FusedGrid& grid) {
+  const auto window = blob.get<MapCellRect>();
+  const auto time = blob.get<double>();
+  const auto scans = blob.get<std::uint64_t>();
+  TileState state;
+  for (auto tiles = blob.get<std::uint64_t>(); tiles > 0; --tiles) {
+    get_tile(blob, state);
+    const RestoreStatus status = restore_tile(state, grid);
+    if (status != RestoreStatus::kOk) {
+      throw std::runtime_error(std::string("a tile in it is wrong: ") + name_of(status));
+    }
+  }
+  restore_progress(window, time, scans, grid);
 }
 
 std::vector<std::uint64_t> identities_of(const TerrainSnapshot& snapshot) {
@@ -113,7 +189,9 @@ std::string CTerrainMap::State::bytes() const {
   blob.put_text(text_of(params));
   blob.put(now->revision);
   blob.put(writer.next_identity);
+  blob.put(writer.time);
   if (now->revision != 0) {
+    if (writer.fusion) put_tiles(now->fused, blob);
     put_scan(*now, blob);
     blob.put_all(identities_of(*now));
   }
@@ -125,11 +203,14 @@ std::unique_ptr<CTerrainMap::State> CTerrainMap::State::from_bytes(const std::st
   BlobReader blob(bytes);
   auto state = std::make_unique<State>(params_of(blob.get_text()));
   const auto revision = blob.get<std::uint64_t>();
-  state->writer.next_identity = blob.get<std::uint64_t>();
+  MapWriter& writer = state->writer;
+  writer.next_identity = blob.get<std::uint64_t>();
+  writer.time = blob.get<double>();
   if (revision != 0) {
+    if (writer.fusion) get_tiles(blob, writer.fusion->grid);
     io::Scan scan;
     const Eigen::Isometry3d T_map_robot = get_scan(blob, scan);
-    const auto next = describe_scan(scan, T_map_robot, state->params, state->writer);
+    const auto next = describe_scan(scan, T_map_robot, writer.time, state->params, writer);
     next->revision = revision;
     std::uint64_t unused = 0;
     next->name_clusters(nullptr, unused);

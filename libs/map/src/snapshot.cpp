@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mrpt_terrain/core/fused_cell.h"
+
 namespace mrpt_terrain {
 namespace {
 
@@ -95,24 +97,63 @@ Slot TerrainSnapshot::slot_at(double x, double y, PlaceStatus& status) const {
   return slot;
 }
 
-CellView TerrainSnapshot::cell_at(double x, double y) const {
+namespace {
+
+/// What the description knows of a slot; heights in the frame of the window.
+CellView described_cell(const TerrainSnapshot& snapshot, std::size_t k) {
+  const Description& description = snapshot.description;
+  const Moments moments = description.grid.moments(k);
   CellView view;
-  const Slot slot = slot_at(x, y, view.status);
-  if (slot == kUnobserved) return view;
-  const auto k = static_cast<std::size_t>(slot);
-  const ElevationGrid& grid = description.grid;
-  const Position2 centre = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[k]));
-  const auto in_map = [&](float height) {
-    const Eigen::Vector3d point(centre.x, centre.y, static_cast<double>(height));
-    return (T_map_window * point).z();
-  };
-  view.height = in_map(grid.h_mean[k]);
-  view.lowest = in_map(grid.h_min[k]);
-  view.highest = in_map(grid.h_max[k]);
-  view.points = static_cast<std::int32_t>(grid.sums[k].n);
+  view.status = PlaceStatus::kKnown;
+  view.height = static_cast<double>(description.grid.h_mean[k]);
+  view.variance = moments.covariance()(2, 2);
+  view.lowest = static_cast<double>(description.grid.h_min[k]);
+  view.highest = static_cast<double>(description.grid.h_max[k]);
+  view.last_seen = snapshot.stamp;
+  view.points = static_cast<std::int32_t>(moments.n);
   view.support = description.cells.support[k];
   view.terrain_class = description.cells.terrain_class[k];
   view.cluster = description.clusters.cluster_of[k];
+  if (snapshot.fused.scans == 0) return view;
+  view.height = static_cast<double>(snapshot.window_cells.height[k]);
+  view.variance = static_cast<double>(snapshot.window_cells.variance[k]);
+  view.last_seen = snapshot.window_cells.last_seen[k];
+  return view;
+}
+
+/// A fused cell that no description covers.
+CellView fused_cell(const TerrainSnapshot& snapshot, double x, double y) {
+  CellView view;
+  MapCell where;
+  if (!snapshot.fused.lattice.cell_at(x, y, where)) return view;
+  if (!snapshot.fused.window.contains(where)) return view;
+  view.status = PlaceStatus::kUnknown;
+  FusedCell cell;
+  if (!read_cell(snapshot.fused, where, snapshot.fusion, cell)) return view;
+  view.status = PlaceStatus::kKnown;
+  view.height = cell.height;
+  view.variance = cell.variance;
+  view.lowest = cell.h_min;
+  view.highest = cell.h_max;
+  view.last_seen = cell.last_seen;
+  view.points = static_cast<std::int32_t>(cell.moments.n);
+  return view;
+}
+
+}  // namespace
+
+CellView TerrainSnapshot::cell_at(double x, double y) const {
+  CellView view;
+  const Slot slot = slot_at(x, y, view.status);
+  if (view.status == PlaceStatus::kOutside && fused.scans != 0) return fused_cell(*this, x, y);
+  if (slot == kUnobserved) return view;
+  const auto k = static_cast<std::size_t>(slot);
+  view = described_cell(*this, k);
+  const GridGeometry& geometry = description.grid.geometry;
+  const Position2 centre = geometry.centre_of(geometry.index_of(description.grid.cell[k]));
+  for (double* height : {&view.height, &view.lowest, &view.highest}) {
+    *height = (T_map_window * Eigen::Vector3d(centre.x, centre.y, *height)).z();
+  }
   return view;
 }
 

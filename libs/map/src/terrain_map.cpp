@@ -14,6 +14,9 @@
 namespace mrpt_terrain {
 namespace {
 
+// Between scans without time stamps, seconds.
+constexpr double kPeriod = 0.1;
+
 TerrainSnapshotPtr empty_snapshot(const MapParams& params) {
   auto snapshot = std::make_shared<TerrainSnapshot>();
   snapshot->stamp = std::numeric_limits<double>::quiet_NaN();
@@ -24,6 +27,11 @@ TerrainSnapshotPtr empty_snapshot(const MapParams& params) {
 std::unique_ptr<OctreeHalf> make_octree(const MapParams& params) {
   if (!params.creation.octree) return nullptr;
   return std::make_unique<OctreeHalf>(params.creation, params.octree);
+}
+
+std::unique_ptr<FusionHalf> make_fusion(const MapParams& params) {
+  if (params.creation.fusion == Fusion::kScan) return nullptr;
+  return std::make_unique<FusionHalf>(fusion_of(params));
 }
 
 /// Beam tables of range image sensors, read once per process. None where the project's data folder
@@ -52,13 +60,17 @@ bool any_finite(const Points& points) {
 }  // namespace
 
 CTerrainMap::State::State(const MapParams& given)
-    : params(given), octree(make_octree(given)), snapshot_(empty_snapshot(given)) {}
+    : params(given), octree(make_octree(given)), snapshot_(empty_snapshot(given)) {
+  writer.fusion = make_fusion(given);
+}
 
-CTerrainMap::State::State(const State& other) : params(other.params), snapshot_(other.snapshot()) {
+CTerrainMap::State::State(const State& other) : State(other.params) {
   const std::lock_guard lock(other.writing);
   writer.next_identity = other.writer.next_identity;
+  writer.time = other.writer.time;
   if (other.octree) octree = std::make_unique<OctreeHalf>(*other.octree);
   snapshot_ = other.snapshot();
+  if (writer.fusion) copy_tiles(snapshot_->fused, writer.fusion->grid);
 }
 
 TerrainSnapshotPtr CTerrainMap::State::snapshot() const {
@@ -106,10 +118,14 @@ std::shared_ptr<const octomap::OcTree> CTerrainMap::octree() const {
 bool CTerrainMap::State::insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot) {
   if (!any_finite(scan.points)) return false;
   const TerrainSnapshotPtr before = snapshot();
-  const auto next = describe_scan(scan, T_map_robot, params, writer);
+  writer.time = std::isfinite(scan.stamp) ? scan.stamp : writer.time + kPeriod;
+  if (octree) octree->insert(scan, T_map_robot);
+  if (writer.fusion) {
+    fuse({scan.points.view(), T_map_robot, writer.time}, *writer.fusion, octree.get());
+  }
+  const auto next = describe_scan(scan, T_map_robot, writer.time, params, writer);
   next->revision = before->revision + 1;
   next->name_clusters(before.get(), writer.next_identity);
-  if (octree) octree->insert(scan, T_map_robot);
   publish(next);
   return true;
 }
@@ -151,6 +167,7 @@ void CTerrainMap::saveMetricMapRepresentationToFile(const std::string& prefix) c
 void CTerrainMap::internal_clear() {
   const std::lock_guard lock(state_->writing);
   state_->octree = make_octree(state_->params);
+  state_->writer.fusion = make_fusion(state_->params);
   state_->publish(empty_snapshot(state_->params));
 }
 

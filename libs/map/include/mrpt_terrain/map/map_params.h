@@ -9,6 +9,7 @@
 
 #include "mrpt_terrain/core/costs.h"
 #include "mrpt_terrain/core/describe.h"
+#include "mrpt_terrain/core/fused_grid.h"
 #include "mrpt_terrain/core/param_info.h"
 #include "mrpt_terrain/io/scan.h"
 #include "mrpt_terrain/params/fields.h"
@@ -17,9 +18,12 @@ namespace mrpt_terrain {
 
 /// What is described: the last scan by itself, or all scans so far.
 enum class Fusion : std::uint8_t {
-  kScan,  ///< grid, clusters and classes are those of the last scan
+  kScan,     ///< grid, clusters and classes are those of the last scan, in the robot's frame
+  kRolling,  ///< they are those of the fused grid (core/fused_grid.h) about the robot
 };
-constexpr EnumNames<Fusion, 1> enum_names(Fusion) { return {{{Fusion::kScan, "scan"}}}; }
+constexpr EnumNames<Fusion, 2> enum_names(Fusion) {
+  return {{{Fusion::kScan, "scan"}, {Fusion::kRolling, "rolling"}}};
+}
 
 /// `[..._creationOpts]`, beside extent and resolution of the grid.
 struct MapCreationParams {
@@ -115,11 +119,17 @@ struct MapParams {
   MapCreationParams creation;
   DescriptionParams description;
   io::InputParams input;
+  /// Its `cell_size` and `layer_height` are not read: cells are those of the grid, layers have the
+  /// height of the OctoMap's voxels. `fusion_of` fills them in.
+  FusionParams fusion;
   OctreeInsertParams octree;
   MapLikelihoodParams likelihood;
   MapRenderParams render;
   RobotParams robot;
 };
+
+/// `params.fusion` with the sizes that the map gives it.
+[[nodiscard]] FusionParams fusion_of(const MapParams& params);
 
 /// The sections of a map's definition, named `<prefix>_creationOpts` and so on. They point into
 /// `params`.

@@ -10,6 +10,8 @@
 
 #include "mrpt_terrain/core/costs.h"
 #include "mrpt_terrain/core/describe.h"
+#include "mrpt_terrain/core/fused_grid.h"
+#include "mrpt_terrain/core/fused_window.h"
 #include "mrpt_terrain/core/points.h"
 
 namespace mrpt_terrain {
@@ -25,9 +27,11 @@ enum class PlaceStatus : std::uint8_t {
 /// nothing unless the status is kKnown.
 struct CellView {
   PlaceStatus status = PlaceStatus::kOutside;
-  double height = 0.0;  ///< mean of its points
+  double height = 0.0;    ///< of its ground if scans are fused, else mean of its points
+  double variance = 0.0;  ///< of the points about that height, m^2
   double lowest = 0.0;
   double highest = 0.0;
+  double last_seen = 0.0;  ///< stamp of the last scan that hit it, seconds
   std::int32_t points = 0;
   Support support = Support::kUnknown;
   TerrainClass terrain_class = TerrainClass::kNone;  ///< of its cluster
@@ -53,8 +57,9 @@ struct ClusterView {
 /// What a map knew after one insertion. It never changes; whoever holds it may read it while the
 /// map goes on.
 ///
-/// The description lies in the frame of a *window*: with `fusion = scan` that is the robot's frame
-/// at the time of the scan.
+/// The description lies in the frame of a *window*. With `fusion = scan` that is the robot's frame
+/// at the time of the scan; with `fusion = rolling` it is parallel to the map, with the robot near
+/// its origin and z = 0 at the robot's ground.
 class TerrainSnapshot {
  public:
   std::uint64_t revision = 0;  ///< number of insertions that the map has taken; 0: empty
@@ -70,8 +75,15 @@ class TerrainSnapshot {
   CellCosts costs;                    ///< per slot of the description's grid
   RobotParams robot;                  ///< that the costs are for
 
+  /// With `fusion = rolling`: all cells of the map, also those beyond the window, how they are
+  /// read, and what else is known of the window's (per slot). Empty with `fusion = scan`.
+  FusedSnapshot fused;
+  FusionParams fusion;
+  WindowCells window_cells;
+
   /// The cell that holds (x, y) of the map. Where the window is tilted, the place is the one of its
-  /// plane z = 0 that lies above or below.
+  /// plane z = 0 that lies above or below. Fused cells beyond the window are known without support,
+  /// class and cluster.
   [[nodiscard]] CellView cell_at(double x, double y) const;
 
   /// Cost of being at (x, y) of the map, looking along `heading` (radians from the map's x).
@@ -82,7 +94,7 @@ class TerrainSnapshot {
   /// Indices of the clusters whose boxes touch a box, ascending.
   [[nodiscard]] std::vector<std::size_t> clusters_in(const MapBox& box) const;
 
-  /// Slot of the cell over (x, y) of the map, kUnobserved where nothing was seen.
+  /// Slot of the window's cell over (x, y) of the map, kUnobserved where nothing was seen.
   /// \param[out] status
   [[nodiscard]] Slot slot_at(double x, double y, PlaceStatus& status) const;
 

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "mrpt_terrain/core/apply_free_space.h"
+#include "mrpt_terrain/core/describe_fused.h"
+#include "mrpt_terrain/core/fused_grid.h"
+#include "octree_half.h"
+
+namespace mrpt_terrain {
+
+/// The fused grid of a terrain map, with the memory that its writer uses again.
+struct FusionHalf {
+  explicit FusionHalf(const FusionParams& given) : params(given), grid(given) {}
+
+  FusionParams params;
+  FusedGrid grid;
+  FusionWorkspace fusing;
+  FusedDescriptionWorkspace describing;
+  std::vector<ColumnRequest> columns;
+  FreeSpaceGrid free;
+};
+
+/// Fuses a scan that `octree`, if there is one, has taken in before: the heights that its rays have
+/// freed leave the grid, and what the window has left leaves the OctoMap.
+void fuse(const PosedScan& scan, FusionHalf& fusion, OctreeHalf* octree);
+
+/// Makes an empty grid hold what a snapshot holds, without sharing anything with it.
+void copy_tiles(const FusedSnapshot& from, FusedGrid& grid);
+
+}  // namespace mrpt_terrain
