@@ -474,6 +474,38 @@ TEST(Costs, LevelGroundWithNoiseIsNotLethal) {
   }
 }
 
+// With noise of 2 cm and ten points in a cell, nine of ten positions on a curb of 0.2 m are lethal
+// for a robot that climbs 0.12 m, and of one of 0.06 m not one in a hundred cells around it.
+TEST(Costs, CurbsAreToldThroughNoise) {
+  RobotParams robot;
+  robot.max_step = 0.12;
+  for (const double cell : {0.05, 0.2}) {
+    for (const double yaw : {0.0, 0.35, kPi / 4}) {
+      const double half = 16.0 * cell;
+      const auto scan = [&](double h) {
+        return costed(surface(curb(h, yaw, 0.0), 0.3 * cell, half, 0.02, 9), cell, robot,
+                      2.0 * half);
+      };
+      const Costed high = scan(0.2);
+      int lethal = 0;
+      int all = 0;
+      for (double v = -0.7 * half; v < 0.7 * half; v += 0.5 * cell, ++all) {
+        const Position2 p{-v * std::sin(yaw), v * std::cos(yaw)};
+        const Cost cost = cost_at(high.grid, high.costs, p, robot);
+        lethal += cost.status == CostStatus::kLethal ? 1 : 0;
+      }
+      EXPECT_GE(lethal, 0.9 * all) << "cell " << cell << " yaw " << yaw;
+      const Costed low = scan(0.06);
+      int blocked = 0;
+      for (std::size_t k = 0; k < low.costs.size(); ++k) {
+        blocked += low.at(k).status == CostStatus::kLethal ? 1 : 0;
+      }
+      EXPECT_LE(blocked, 0.01 * static_cast<double>(low.costs.size()))
+          << "cell " << cell << " yaw " << yaw;
+    }
+  }
+}
+
 /// Hills, a curb, a wall and noise: something of everything.
 Points mixed_world(std::uint64_t seed) {
   return surface(
