@@ -343,6 +343,7 @@ TEST(Costs, CurbBelowMaxStepIsNotLethalAndHasItsHeight) {
                             robot, 32.0 * t.cell);
     expect_sane(c);
     float highest = 0.0F;
+    double steepest = 0.0;
     for (std::size_t k = 0; k < c.costs.size(); ++k) {
       // Where the curb ends at the edge of the grid, no window may lie on one side of it.
       if (!is_inner(c.grid, k, 7)) continue;
@@ -354,7 +355,10 @@ TEST(Costs, CurbBelowMaxStepIsNotLethalAndHasItsHeight) {
           << along(t.yaw, p.x, p.y) - t.shift << " parts " << cost.parts.slope << " "
           << cost.parts.step << " " << cost.parts.roughness;
       highest = std::max(highest, c.costs.step[k]);
+      steepest = std::max(steepest, c.angle(k));
     }
+    EXPECT_LT(steepest, radians(0.5))
+        << "cell " << t.cell << " yaw " << t.yaw << " shift " << t.shift;
     EXPECT_NEAR(highest, 0.1, 0.01) << "cell " << t.cell << " yaw " << t.yaw;
   }
 }
