@@ -24,7 +24,8 @@ namespace {
 using octomap::OcTree;
 using test::OctreeScan;
 
-constexpr const char* kUsage = R"(usage: octree_insertion WHO SCANS COUNT RESOLUTION MAX_RANGE DISCRETIZE
+constexpr const char* kUsage =
+    R"(usage: octree_insertion WHO SCANS COUNT RESOLUTION MAX_RANGE DISCRETIZE
 
 WHO         own, octomap, or check: both, and the trees are compared after every scan
 SCANS       a folder of the real data, such as kitti_raw_0001, or a rawlog, whose first scan is used
@@ -41,8 +42,8 @@ std::vector<OctreeScan> first_scan_of(const std::string& rawlog) {
   auto archive = mrpt::serialization::archiveFrom(stream);
   const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(archive.ReadObject());
   io::SensorPoints points;
-  if (!observation || io::convert_observation(*observation, {}, {}, points).status !=
-                          io::ConversionStatus::kOk) {
+  if (!observation ||
+      io::convert_observation(*observation, {}, {}, points).status != io::ConversionStatus::kOk) {
     throw std::runtime_error(rawlog + " does not begin with a scan");
   }
   OctreeScan scan;

@@ -16,7 +16,7 @@ struct alignas(64) CellBlock {
 
 /// 64^3 cells as 8^3 blocks, of which only those exist that a ray met.
 struct CellTile {
-  CellCode code = 0;             ///< of its cells, without the lowest 18 bits
+  CellCode code = 0;               ///< of its cells, without the lowest 18 bits
   std::uint64_t present[8] = {};   ///< a bit per block, in the order of codes
   std::uint64_t occupied[8] = {};  ///< blocks in which a ray ends
   std::uint32_t block[512] = {};   ///< number of the block; 0: there is none

@@ -256,7 +256,6 @@ class Passage {
   template <class Marks>
   bool update_children(OcTreeNode& node, bool is_new, const Marks& marks, CellCode code) {
     ensure_array(node);
-    if (!is_new) prefetch_children(node);
     bool touched = is_new;
     for (std::size_t k = 0; k < 8; ++k) {
       if (!marks.has_part(k)) continue;
@@ -268,15 +267,6 @@ class Passage {
     }
     if (touched) prune_or_raise(tree_, node);
     return touched;
-  }
-
-  // Nodes lie anywhere in memory: all are asked for before the first is waited for.
-  static void prefetch_children(OcTreeNode& node) {
-    for (std::size_t k = 0; k < 8; ++k) __builtin_prefetch(child_of(node, k));
-    for (std::size_t k = 0; k < 8; ++k) {
-      OcTreeNode* const child = child_of(node, k);
-      if (child != nullptr) __builtin_prefetch(children_of(*child));
-    }
   }
 
   // Above the tile there is one way only, and the code is the tile's.
