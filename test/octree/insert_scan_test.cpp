@@ -76,8 +76,7 @@ OctreeScan vlp16_scan() {
   if (!std::filesystem::exists(file)) return scan;
   mrpt::io::CFileGZInputStream stream(file.string());
   auto archive = mrpt::serialization::archiveFrom(stream);
-  const auto observation =
-      std::dynamic_pointer_cast<mrpt::obs::CObservation>(archive.ReadObject());
+  const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(archive.ReadObject());
   io::SensorPoints points;
   const auto conversion = io::convert_observation(*observation, {}, {}, points);
   EXPECT_EQ(conversion.status, io::ConversionStatus::kOk) << conversion.reason;
@@ -379,9 +378,10 @@ TEST(InsertScan, OracleFreedCellsAreThoseThatWereOccupiedBefore) {
       std::set<CellCode> reported;
       for (const FreedCube& cube : freed) {
         for (int n = 0; n < cube.cells * cube.cells * cube.cells; ++n) {
-          const CellKey key = {static_cast<std::uint16_t>(cube.key[0] + n % cube.cells),
-                               static_cast<std::uint16_t>(cube.key[1] + n / cube.cells % cube.cells),
-                               static_cast<std::uint16_t>(cube.key[2] + n / cube.cells / cube.cells)};
+          const CellKey key = {
+              static_cast<std::uint16_t>(cube.key[0] + n % cube.cells),
+              static_cast<std::uint16_t>(cube.key[1] + n / cube.cells % cube.cells),
+              static_cast<std::uint16_t>(cube.key[2] + n / cube.cells / cube.cells)};
           EXPECT_TRUE(reported.insert(code_of(key)).second);
         }
       }
