@@ -166,6 +166,14 @@ TEST(Costs, RoughnessOfThreeByThreeCellsByHand) {
   EXPECT_NEAR(c.costs.roughness[k], std::sqrt(8.0 / 9.0) * a, 1e-7);
 }
 
+// The corner's own window has four cells and a variance of a^2; that of all nine cells has 14/9
+// a^2, less per cell. The windows of six cells have 1.18 a^2, more per cell than nine.
+TEST(Costs, SurfaceHasTheLeastVariancePerCellByHand) {
+  const float a = 0.01F;
+  const Costed c = costed(flat_cells({{a, -a, 2 * a}, {-a, a, -a}, {2 * a, -a, a}}));
+  EXPECT_NEAR(c.costs.roughness[c.slot(0, 0)], std::sqrt(14.0 / 9.0) * a, 1e-6);
+}
+
 // The cell's own extent counts beyond what its gradient explains: 1 m cells on a level plane.
 TEST(Costs, ExtentWithinACellByHand) {
   grids::HeightTable table(5, std::vector<Heights>(5, Heights{0.0F, 0.0F, 0.0F}));

@@ -27,7 +27,7 @@ struct RobotParams {
   double ground_clearance = 0.08;         ///< under the body, metres
   double wheel_radius = 0.1;              ///< metres
   double max_climb = 0.3490658503988659;  ///< 20 deg, radians
-  double max_tilt = 0.26179938779914946;   ///< 15 deg, radians
+  double max_tilt = 0.26179938779914946;  ///< 15 deg, radians
   double max_step = 0.08;                 ///< metres
   double max_roughness = 0.05;            ///< metres
 
