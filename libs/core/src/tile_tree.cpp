@@ -9,6 +9,8 @@ namespace {
 
 // A tile is put in order when more than one in so many of its bins lies out of order.
 constexpr std::uint32_t kMostDisorder = 4;
+// Enough for most tiles: four bins a cell.
+constexpr std::size_t kUsualBlocks = 4 * kTileCells / kBinsPerBlock;
 constexpr std::size_t kMostBlocks = kMostBins / kBinsPerBlock;
 
 // Number of the child on the way to a tile; `i` and `j` count from the tree's corner.
@@ -73,6 +75,7 @@ const Tile* TileTree::find(TileIndex index) const {
 
 Ref<Tile> TileStore::new_tile() {
   Ref<Tile> tile = take_from(tiles_);
+  tile->blocks.reserve(kUsualBlocks);
   tile->cells.fill(TileCell{});
   tile->first_unused = kNoBin;
   tile->bins = 0;
