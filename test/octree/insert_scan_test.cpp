@@ -233,6 +233,25 @@ TEST(InsertScan, TreesThatAreNotPrunedBecomeWhatOctomapMakesOfThem) {
   }
 }
 
+TEST(InsertScan, APrunedCubeAtItsLimitStaysWhole) {
+  OcTree own(0.1);
+  for (int k = 0; k < 16 * 16 * 16; ++k) {
+    const octomap::OcTreeKey key(static_cast<std::uint16_t>(32768 + k % 16),
+                                 static_cast<std::uint16_t>(32768 + k / 16 % 16),
+                                 static_cast<std::uint16_t>(32768 + k / 256));
+    own.updateNode(key, 10.0F);
+  }
+  OcTree reference(own);
+  EXPECT_EQ(own.getNumLeafNodes(), 1U);
+  OctreeScan scan;
+  scan.origins = {{-1.05F, 0.05F, 0.05F}};
+  scan.push_back(0.05F, 0.05F, 0.05F);
+  InsertionWorkspace workspace;
+  insert_scan(scan.ends(), scan.starts(), {}, workspace, own);
+  test::insert_by_octomap(scan, {}, reference);
+  EXPECT_TRUE(test::same_tree(own, reference));
+}
+
 TEST(InsertScan, WhatCannotBeEqualIsLeftToOctomap) {
   RandomGenerator random(1);
   const OctreeScan scan = test::random_scan(random, 0.1, 1);

@@ -29,7 +29,7 @@ void prune_or_raise(octomap::OcTree& tree, OcTreeNode& node) {
     equal = equal && first != nullptr && value == first->getLogOdds() && !has_children(*child);
   }
   if (equal) {
-    remove_leaves(tree, node, greatest);
+    remove_leaves(tree, node, first->getLogOdds());
   } else {
     node.setLogOdds(greatest);
   }
