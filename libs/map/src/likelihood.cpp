@@ -8,8 +8,8 @@
 namespace mrpt_terrain {
 namespace {
 
-/// Square of the distance between a point and the nearest of the boxes that the observed cells
-/// around it make of their lowest and highest points. Negative: nothing is known around it.
+/// Square of the distance between a point and the nearest of the boxes about the points of the
+/// cells around it. Negative: nothing is known around it.
 class CellDistance {
  public:
   CellDistance(const ElevationGrid& grid, double max_distance)
@@ -24,7 +24,7 @@ class CellDistance {
       for (int w = middle.w - reach_; w <= middle.w + reach_; ++w) {
         const Slot slot = grid_.slot_at({l, w});
         if (slot == kUnobserved) continue;
-        const double square = square_to({l, w}, static_cast<std::size_t>(slot), p);
+        const double square = square_to(static_cast<std::size_t>(slot), p);
         if (least < 0.0 || square < least) least = square;
       }
     }
@@ -32,11 +32,18 @@ class CellDistance {
   }
 
  private:
-  [[nodiscard]] double square_to(CellIndex cell, std::size_t slot, const Eigen::Vector3d& p) const {
-    const Position2 centre = grid_.geometry.centre_of(cell);
-    const double half = 0.5 * grid_.geometry.cell_size();
-    const double dx = std::max(0.0, std::abs(p.x() - centre.x) - half);
-    const double dy = std::max(0.0, std::abs(p.y() - centre.y) - half);
+  // A cell's points fill a part of it: a wall, say, is thin. Spread evenly over a width w they have
+  // the standard deviation w / sqrt(12).
+  [[nodiscard]] double square_to(std::size_t slot, const Eigen::Vector3d& p) const {
+    const MomentSums& sums = grid_.sums[slot];
+    const double share = 1.0 / sums.n;
+    const auto beside = [share](double value, double sum, double squares) {
+      const double mean = sum * share;
+      const double half = std::sqrt(std::max(0.0, 3.0 * (squares * share - mean * mean)));
+      return std::max(0.0, std::abs(value - mean) - half);
+    };
+    const double dx = beside(p.x(), sums.x, sums.xx);
+    const double dy = beside(p.y(), sums.y, sums.yy);
     const double above = p.z() - static_cast<double>(grid_.h_max[slot]);
     const double below = static_cast<double>(grid_.h_min[slot]) - p.z();
     const double dz = std::max({0.0, above, below});
