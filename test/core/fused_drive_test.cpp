@@ -150,6 +150,12 @@ TEST(FusedDrive, AWindowKnowsMoreThanAScanAndIsDescribed) {
   EXPECT_GT(share, single_share - 0.05)
       << "noise of many scans does not turn ground into obstacles";
   EXPECT_GT(fused.description.things.size(), 10U);
+  const FusedMemory memory = memory_of(grid);
+  const double area = static_cast<double>(memory.cells) * fusion.cell_size * fusion.cell_size;
+  const double bytes_per_m2 = static_cast<double>(memory.tiles) / area;
+  std::printf("%zu cells, %zu bins, %.0f m2, %.0f bytes per m2\n", memory.cells, memory.bins, area,
+              bytes_per_m2);
+  EXPECT_LT(bytes_per_m2, 8000.0);
 }
 
 }  // namespace

@@ -145,7 +145,7 @@ TEST(FusedSnapshot, ReadersSeeWholeScansWhileTheWriterGoesOn) {
   RandomGenerator random(1);
   FusionWorkspace workspace;
   int k = 0;
-  while (k < 300 || ((checked[0] < 5 || checked[1] < 5) && k < 100000)) {
+  while (k < 300 || ((checked[0] < 5 || checked[1] < 5) && k < 10000)) {
     Points points;
     for (std::size_t i = 0; i < kPoints; ++i) {
       worlds::add_point(points, 20 * random.uniform(), 20 * random.uniform(), random.uniform());
