@@ -25,7 +25,7 @@ using octomap::OcTree;
 using test::OctreeScan;
 
 constexpr const char* kUsage =
-    R"(usage: octree_insertion WHO SCANS COUNT RESOLUTION MAX_RANGE DISCRETIZE
+    R"(usage: octree_insertion WHO SCANS COUNT RESOLUTION MAX_RANGE DISCRETIZE [EVERY]
 
 WHO         own, octomap, or check: both, and the trees are compared after every scan
 SCANS       a folder of the real data, such as kitti_raw_0001, or a rawlog, whose first scan is used
@@ -33,6 +33,7 @@ COUNT       scans to insert, at most
 RESOLUTION  metres
 MAX_RANGE   metres; negative: no limit
 DISCRETIZE  0 or 1
+EVERY       OctoMap inserts the first scan and every so many; this library, silently, the others
 
 Prints a line per scan: number, milliseconds of processor time.
 )";
@@ -82,16 +83,22 @@ double insert_octomap(const OctreeScan& scan, const octree::InsertionOptions& op
 }
 
 int run(const std::vector<std::string>& arguments) {
-  if (arguments.size() != 6) {
+  if (arguments.size() != 6 && arguments.size() != 7) {
     std::cerr << kUsage;
     return 2;
   }
   const std::string& who = arguments[0];
   const auto scans = read_scans(arguments[1], std::stoul(arguments[2]));
+  const std::size_t every = arguments.size() == 7 ? std::stoul(arguments[6]) : 1;
   const octree::InsertionOptions options{std::stod(arguments[4]), arguments[5] == "1"};
   OcTree own(std::stod(arguments[3])), octomap(std::stod(arguments[3]));
   octree::InsertionWorkspace workspace;
   for (std::size_t k = 0; k < scans.size(); ++k) {
+    if (k != 0 && (k + 1) % every != 0) {
+      // The trees are the same.
+      (void)insert_own(scans[k], options, workspace, who == "own" ? own : octomap);
+      continue;
+    }
     double time = 0.0;
     if (who != "octomap") time = insert_own(scans[k], options, workspace, own);
     if (who != "own") time = insert_octomap(scans[k], options, octomap);

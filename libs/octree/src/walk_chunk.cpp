@@ -59,6 +59,18 @@ void walk_plain(Lanes& lanes, Trail& trail) {
 
 #ifdef MRPT_TERRAIN_HAS_VECTORS
 
+// `complete` of some lanes, from the steps at which they entered a word, a row of bits per step,
+// and the number of their steps.
+[[gnu::target("avx2")]] void set_complete(const std::uint8_t* entered, const std::uint64_t* steps,
+                                          std::size_t lanes, std::uint32_t* complete) {
+  const __m256i rows = _mm256_load_si256(reinterpret_cast<const __m256i*>(entered));
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const __m256i column = _mm256_slli_epi16(rows, 7 - static_cast<int>(lane));
+    const auto bits = static_cast<std::uint32_t>(_mm256_movemask_epi8(column));
+    complete[lane] = last_in_word(bits, steps[lane]);
+  }
+}
+
 template <Ties kTies>
 inline constexpr int kGoesFirst = kTies == Ties::kAsOctomap ? _CMP_LT_OQ : _CMP_LE_OQ;
 
@@ -117,12 +129,71 @@ template <Ties kTies>
   lanes.alive = alive;
   alignas(64) std::uint64_t counts[kLanes];
   _mm512_store_si512(counts, steps);
-  const __m256i rows = _mm256_load_si256(reinterpret_cast<const __m256i*>(entered));
-  for (int lane = 0; lane < static_cast<int>(kLanes); ++lane) {
-    // Bit k: lane's bit of row k.
-    const int column = _mm256_movemask_epi8(_mm256_slli_epi16(rows, 7 - lane));
-    trail.complete[lane] = last_in_word(static_cast<std::uint32_t>(column), counts[lane]);
+  set_complete(entered, counts, kLanes, trail.complete);
+}
+
+// Four of the eight lanes, from number `first` on.
+template <Ties kTies>
+[[gnu::target("avx2")]] void walk_four_lanes(Lanes& lanes, Trail& trail, int first) {
+  const auto words = [first](auto* row) { return reinterpret_cast<__m256i*>(row + first); };
+  __m256d tx = _mm256_load_pd(lanes.crossing[0] + first);
+  __m256d ty = _mm256_load_pd(lanes.crossing[1] + first);
+  __m256d tz = _mm256_load_pd(lanes.crossing[2] + first);
+  const __m256i bits_x = _mm256_set1_epi64x(static_cast<long long>(kAxisBits[0]));
+  const __m256i bits_y = _mm256_set1_epi64x(static_cast<long long>(kAxisBits[1]));
+  const __m256i bits_z = _mm256_set1_epi64x(static_cast<long long>(kAxisBits[2]));
+  const __m256i ones = _mm256_set1_epi64x(-1);
+  const __m256i within_word = _mm256_set1_epi64x(63);
+  __m256i cell = _mm256_load_si256(words(lanes.cell));
+  __m256i word = _mm256_setzero_si256(), steps = _mm256_setzero_si256();
+  const int up = lanes.alive >> first;
+  __m256i alive = _mm256_set_epi64x(-(up >> 3 & 1), -(up >> 2 & 1), -(up >> 1 & 1), -(up & 1));
+  alignas(32) std::uint8_t entered[kChunk];
+  for (std::size_t k = 0; k < kChunk; ++k) {
+    const __m256d x_before_y = _mm256_cmp_pd(tx, ty, kGoesFirst<kTies>);
+    const __m256d x = _mm256_and_pd(x_before_y, _mm256_cmp_pd(tx, tz, kGoesFirst<kTies>));
+    const __m256d y = _mm256_andnot_pd(x_before_y, _mm256_cmp_pd(ty, tz, kGoesFirst<kTies>));
+    const __m256i xi = _mm256_castpd_si256(x), yi = _mm256_castpd_si256(y);
+    const __m256i bits = _mm256_blendv_epi8(_mm256_blendv_epi8(bits_z, bits_x, xi), bits_y, yi);
+    const __m256i step_xz = _mm256_blendv_epi8(_mm256_load_si256(words(lanes.step[2])),
+                                               _mm256_load_si256(words(lanes.step[0])), xi);
+    const __m256i step = _mm256_blendv_epi8(step_xz, _mm256_load_si256(words(lanes.step[1])), yi);
+    const __m256i sum = _mm256_add_epi64(_mm256_or_si256(cell, _mm256_xor_si256(bits, ones)), step);
+    const __m256i before = cell;
+    cell = _mm256_or_si256(_mm256_and_si256(bits, sum), _mm256_andnot_si256(bits, before));
+    const __m256i bit =
+        _mm256_sllv_epi64(_mm256_set1_epi64x(1), _mm256_and_si256(cell, within_word));
+    const __m256i stays = _mm256_cmpeq_epi64(
+        _mm256_andnot_si256(within_word, _mm256_xor_si256(cell, before)), _mm256_setzero_si256());
+    entered[k] = static_cast<std::uint8_t>(~_mm256_movemask_pd(_mm256_castsi256_pd(stays)));
+    word = _mm256_or_si256(bit, _mm256_and_si256(stays, word));
+    tx = _mm256_add_pd(tx, _mm256_and_pd(x, _mm256_load_pd(lanes.spacing[0] + first)));
+    ty = _mm256_add_pd(ty, _mm256_and_pd(y, _mm256_load_pd(lanes.spacing[1] + first)));
+    tz = _mm256_add_pd(
+        tz, _mm256_andnot_pd(_mm256_or_pd(x, y), _mm256_load_pd(lanes.spacing[2] + first)));
+    const __m256d next = _mm256_min_pd(_mm256_min_pd(tx, ty), tz);
+    const __m256d in_length = _mm256_cmp_pd(next, _mm256_load_pd(lanes.length + first), _CMP_LE_OQ);
+    const __m256i arrived = _mm256_cmpeq_epi64(cell, _mm256_load_si256(words(lanes.last)));
+    alive = _mm256_andnot_si256(arrived, _mm256_and_si256(alive, _mm256_castpd_si256(in_length)));
+    steps = _mm256_sub_epi64(steps, alive);
+    _mm256_store_si256(words(trail.cell[k]), cell);
+    _mm256_store_si256(words(trail.word[k]), word);
   }
+  _mm256_store_pd(lanes.crossing[0] + first, tx);
+  _mm256_store_pd(lanes.crossing[1] + first, ty);
+  _mm256_store_pd(lanes.crossing[2] + first, tz);
+  _mm256_store_si256(words(lanes.cell), cell);
+  const int still = _mm256_movemask_pd(_mm256_castsi256_pd(alive));
+  lanes.alive = static_cast<std::uint8_t>((lanes.alive & ~(15 << first)) | still << first);
+  alignas(32) std::uint64_t counts[4];
+  _mm256_store_si256(reinterpret_cast<__m256i*>(counts), steps);
+  set_complete(entered, counts, 4, trail.complete + first);
+}
+
+template <Ties kTies>
+void walk_avx2(Lanes& lanes, Trail& trail) {
+  walk_four_lanes<kTies>(lanes, trail, 0);
+  walk_four_lanes<kTies>(lanes, trail, 4);
 }
 
 #endif
@@ -138,6 +209,7 @@ const std::array<ChunkWalker, 3>& chunk_walkers() {
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
       found[size++] = walk_avx512<kTies>;
     }
+    if (__builtin_cpu_supports("avx2")) found[size++] = walk_avx2<kTies>;
 #endif
     while (size < found.size()) found[size++] = walk_plain<kTies>;
     return found;
