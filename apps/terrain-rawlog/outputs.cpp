@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <filesystem>
 #include <stdexcept>
 
 #include "mrpt_terrain/files/atomic_file.h"
@@ -14,20 +13,11 @@
 #include "mrpt_terrain/view/palette.h"
 #include "mrpt_terrain/view/scene.h"
 #include "mrpt_terrain/view/top_view.h"
+#include "output_place.h"
 
 namespace {
 
 using namespace mrpt_terrain;
-
-std::string made_folder(std::string folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw std::runtime_error(folder + ": cannot be made: " +
-                             (error ? error.message() : "there is something else of that name"));
-  }
-  return folder;
-}
 
 std::string scan_name(std::size_t index) {
   std::array<char, 32> name{};

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "app_params.h"
 #include "mrpt_terrain/files/whole_file.h"
 #include "mrpt_terrain/view/run_summary.h"
 #include "mrpt_terrain/view/scan_record.h"
-#include "scan_pipeline.h"
 
 /// A described scan that waits to be drawn.
 struct DrawableScan {
