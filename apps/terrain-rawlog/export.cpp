@@ -10,9 +10,9 @@
 #include "mrpt_terrain/io/observation_reader.h"
 #include "mrpt_terrain/io/ply.h"
 #include "mrpt_terrain/map/map_file.h"
-#include "mrpt_terrain/view/palette.h"
 #include "options.h"
 #include "output_place.h"
+#include "outputs.h"
 #include "scan_reading.h"
 
 namespace {
@@ -32,10 +32,7 @@ Points points_in_map(const TerrainSnapshot& snapshot) {
 void write_points(const CTerrainMap& map, const std::string& file) {
   const TerrainSnapshotPtr now = map.snapshot();
   io::write_labelled_ply(file, points_in_map(*now).view(), now->description.labels,
-                         [](Support support, TerrainClass terrain_class) {
-                           const view::Rgb colour = view::colour_of(terrain_class, support);
-                           return io::PointColor{colour.r, colour.g, colour.b};
-                         });
+                         label_colours());
 }
 
 int export_map(const CTerrainMap& map, const ExportOptions& options, Messages& messages) {

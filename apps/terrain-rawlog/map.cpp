@@ -67,6 +67,7 @@ void insert(view::ScanRecord& record, MapRun& run) {
   record.milliseconds.total = ms + record.milliseconds.io;
   record.counts = view::count(run.map.snapshot()->description);
   view::add_scan(run.reading.summary, record);
+  run.reading.messages.debug(place_of(record) + ": inserted in " + view::fixed(ms, 1) + " ms\n");
   warn_about(record, kWords, run.reading);
 }
 
