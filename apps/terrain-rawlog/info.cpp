@@ -6,8 +6,10 @@
 
 #include "exit_code.h"
 #include "input_support.h"
+#include "map_text.h"
 #include "mrpt_terrain/io/observation_reader.h"
 #include "mrpt_terrain/io/scan.h"
+#include "mrpt_terrain/map/map_file.h"
 #include "mrpt_terrain/view/text.h"
 #include "options.h"
 #include "stop_signal.h"
@@ -72,6 +74,11 @@ std::string describe_poses(const std::string& file) {
 
 void print_file(const std::string& file, Messages& messages, int& exit_code) {
   messages.info(file + "\n");
+  refuse_pipe(file);
+  if (is_map_file(file)) {
+    messages.info(map_text(load_map_file(file)));
+    return;
+  }
   const sensors::SensorModels models = load_sensor_models();
   const std::unique_ptr<io::ObservationReader> reader = open_input(file);
   std::map<SensorKey, SensorInfo> sensors;

@@ -46,12 +46,16 @@ std::string pose_text(const CPose3D& pose) {
   return text;
 }
 
-std::unique_ptr<mrpt_terrain::io::ObservationReader> open_input(const std::string& file) {
+void refuse_pipe(const std::string& file) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(file, ignored);
   if (std::filesystem::is_other(status)) {
     throw mrpt_terrain::io::ReadError(file + ": is a pipe or a device, not a file");
   }
+}
+
+std::unique_ptr<mrpt_terrain::io::ObservationReader> open_input(const std::string& file) {
+  refuse_pipe(file);
   return mrpt_terrain::io::open_observations(file);
 }
 

@@ -17,6 +17,10 @@
 /// The same form, for messages.
 [[nodiscard]] std::string pose_text(const mrpt::poses::CPose3D& pose);
 
+/// Refuses files that cannot be read more than once, instead of waiting for them. Throws ReadError
+/// for pipes and devices.
+void refuse_pipe(const std::string& file);
+
 /// `io::open_observations` for files that can be read more than once, as the programs do: pipes and
 /// devices are refused with a ReadError instead of waited for.
 [[nodiscard]] std::unique_ptr<mrpt_terrain::io::ObservationReader> open_input(

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "app_params.h"
 #include "exit_code.h"
@@ -12,27 +15,20 @@
 
 namespace {
 
-void add_process(CLI::App& app, ProcessOptions& options) {
-  CLI::App& command =
-      *app.add_subcommand("process", "Describe the scans of rawlogs or simple maps");
-  command.add_option("inputs", options.inputs, "Files: .rawlog or .simplemap, also gzipped")
+void add_inputs(CLI::App& command, InputOptions& input) {
+  command.add_option("inputs", input.inputs, "Files: .rawlog or .simplemap, also gzipped")
       ->required()
       ->type_name("IN...");
-  command
-      .add_option("-c,--config", options.config, "Parameters (.ini); see --print-default-config")
-      ->type_name("FILE");
-  command.add_option("--set", options.settings, "One parameter, after the file; may be repeated")
+}
+
+void add_settings(CLI::App& command, std::vector<std::string>& settings,
+                  const std::string& meaning) {
+  command.add_option("--set", settings, meaning)
       ->type_name("SECTION.KEY=VALUE")
       ->allow_extra_args(false);
-  command.add_option("-o,--output-dir", options.output_dir, "Folder for all results")
-      ->type_name("DIR")
-      ->capture_default_str();
-  command
-      .add_option("--every", options.every,
-                  "Pictures, scenes and clouds of every N-th scan (default: first, worst, last)")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber.description(""));
-  Selection& selection = options.selection;
+}
+
+void add_selection(CLI::App& command, Selection& selection) {
   command
       .add_option("--sensor-label", selection.sensor_label,
                   "Only observations whose whole label matches")
@@ -46,19 +42,42 @@ void add_process(CLI::App& app, ProcessOptions& options) {
   command.add_option("--only-first-n", selection.only_first_n, "Stop after N scans")
       ->check(CLI::NonNegativeNumber.description(""))
       ->type_name("N");
-  command.add_option("--poses", options.poses, "Poses of the robot, instead of the rawlog's own")
+}
+
+void add_reading(CLI::App& command, InputOptions& input) {
+  add_selection(command, input.selection);
+  command.add_option("--poses", input.poses, "Poses of the robot, instead of the rawlog's own")
       ->type_name("FILE.tum");
   command
-      .add_option("--sensor-pose", options.sensor_pose,
+      .add_option("--sensor-pose", input.sensor_pose,
                   "Sensor on the robot, instead of the observations' own: \"x y z yaw pitch "
                   "roll\" in m and deg; z = 0 of the robot is on the ground")
       ->type_name("POSE");
-  command.add_flag("--find-ground", options.find_ground,
+  command.add_flag("--find-ground", input.find_ground,
                    "Find height and tilt of the sensor in the first scan that shows the ground");
   command
-      .add_option("--externals-dir", options.externals_dir,
+      .add_option("--externals-dir", input.externals_dir,
                   "Folder of externally stored data (default: as rawlog tools find it)")
       ->type_name("DIR");
+}
+
+void add_process(CLI::App& app, ProcessOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("process", "Describe the scans of rawlogs or simple maps");
+  add_inputs(command, options.input);
+  command
+      .add_option("-c,--config", options.config, "Parameters (.ini); see --print-default-config")
+      ->type_name("FILE");
+  add_settings(command, options.settings, "One parameter, after the file; may be repeated");
+  command.add_option("-o,--output-dir", options.output_dir, "Folder for all results")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command
+      .add_option("--every", options.every,
+                  "Pictures, scenes and clouds of every N-th scan (default: first, worst, last)")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber.description(""));
+  add_reading(command, options.input);
   command.add_option("--table-rows", options.table_rows, "Clusters per printed table")
       ->check(CLI::NonNegativeNumber.description(""))
       ->type_name("N")
@@ -66,9 +85,51 @@ void add_process(CLI::App& app, ProcessOptions& options) {
   add_verbosity(command, options.verbosity);
 }
 
+void add_map(CLI::App& app, MapOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("map", "Build one terrain map out of rawlogs or simple maps");
+  add_inputs(command, options.input);
+  command
+      .add_option("-c,--config", options.config,
+                  "The map's definition (.ini), as params/mrpt/terrain_map.ini")
+      ->type_name("FILE");
+  add_settings(command, options.settings,
+               "One parameter, after the file, such as creationOpts.fusion=rolling; may be "
+               "repeated");
+  command
+      .add_option("-o,--output", options.output,
+                  "Beginning of the files' names, or a folder for them")
+      ->type_name("PREFIX")
+      ->capture_default_str();
+  add_reading(command, options.input);
+  add_verbosity(command, options.verbosity);
+}
+
+void add_export(CLI::App& app, ExportOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("export", "Write the files of a stored terrain map (.metricmap) again");
+  command.add_option("input", options.input, "The map, as `map` wrote it")
+      ->required()
+      ->type_name("FILE.metricmap");
+  command
+      .add_option("-o,--output", options.output,
+                  "Beginning of the files' names, or a folder for them")
+      ->required()
+      ->type_name("PREFIX");
+  add_settings(command, options.settings,
+               "What the scene shows, such as renderOpts.colouring=cost; may be repeated");
+  command
+      .add_option("--points", options.points,
+                  "Labelled points of the last scan, in the map's frame")
+      ->type_name("FILE.ply");
+  add_verbosity(command, options.verbosity);
+}
+
 void add_info(CLI::App& app, InfoOptions& options) {
   CLI::App& command = *app.add_subcommand("info", "Say what files hold and what can be described");
-  command.add_option("inputs", options.inputs, "Files: .rawlog or .simplemap, also gzipped")
+  command
+      .add_option("inputs", options.inputs,
+                  "Files: .rawlog, .simplemap or .metricmap, also gzipped")
       ->required()
       ->type_name("IN...");
   command.add_option("--externals-dir", options.externals_dir, "Folder of externally stored data")
@@ -104,6 +165,32 @@ void add_import(CLI::App& app, ImportCommandOptions& options) {
   add_verbosity(command, options.verbosity);
 }
 
+/// The options of all commands.
+struct Commands {
+  ProcessOptions process;
+  MapOptions map;
+  ExportOptions export_map;
+  InfoOptions info;
+  ImportCommandOptions import;
+
+  explicit Commands(CLI::App& app) {
+    add_process(app, process);
+    add_map(app, map);
+    add_export(app, export_map);
+    add_info(app, info);
+    add_import(app, import);
+  }
+  /// Runs the one that was asked for, if one was; returns its exit code.
+  [[nodiscard]] std::optional<int> run(const CLI::App& app) const {
+    if (app.got_subcommand("process")) return run_process(process);
+    if (app.got_subcommand("map")) return run_map(map);
+    if (app.got_subcommand("export")) return run_export(export_map);
+    if (app.got_subcommand("info")) return run_info(info);
+    if (app.got_subcommand("import")) return run_import(import);
+    return std::nullopt;
+  }
+};
+
 int run(int argc, char** argv) {
   CLI::App app("Terrain out of recorded range data: heights, ground, obstacles, potholes, slopes.",
                "terrain-rawlog");
@@ -116,12 +203,7 @@ int run(int argc, char** argv) {
   bool print_config = false;
   app.add_flag("--print-default-config", print_config, "Print all parameters with their defaults");
   app.require_subcommand(0, 1);
-  ProcessOptions process;
-  InfoOptions info;
-  ImportCommandOptions import;
-  add_process(app, process);
-  add_info(app, info);
-  add_import(app, import);
+  Commands commands(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -131,9 +213,7 @@ int run(int argc, char** argv) {
     std::cout << mrpt_terrain::params::dump_ini(AppParams{}) << std::flush;
     return std::cout ? kExitOk : kExitOutput;
   }
-  if (app.got_subcommand("process")) return run_process(process);
-  if (app.got_subcommand("info")) return run_info(info);
-  if (app.got_subcommand("import")) return run_import(import);
+  if (const auto exit_code = commands.run(app)) return *exit_code;
   std::cout << app.help();
   return kExitUsage;
 }

@@ -4,30 +4,19 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <filesystem>
 #include <stdexcept>
 
 #include "mrpt_terrain/files/atomic_file.h"
-#include "mrpt_terrain/io/ply.h"
 #include "mrpt_terrain/params/ini.h"
 #include "mrpt_terrain/view/csv.h"
 #include "mrpt_terrain/view/palette.h"
 #include "mrpt_terrain/view/scene.h"
 #include "mrpt_terrain/view/top_view.h"
+#include "output_place.h"
 
 namespace {
 
 using namespace mrpt_terrain;
-
-std::string made_folder(std::string folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw std::runtime_error(folder + ": cannot be made: " +
-                             (error ? error.message() : "there is something else of that name"));
-  }
-  return folder;
-}
 
 std::string scan_name(std::size_t index) {
   std::array<char, 32> name{};
@@ -36,6 +25,13 @@ std::string scan_name(std::size_t index) {
 }
 
 }  // namespace
+
+io::PointPalette label_colours() {
+  return [](Support support, TerrainClass terrain_class) {
+    const view::Rgb colour = view::colour_of(terrain_class, support);
+    return io::PointColor{colour.r, colour.g, colour.b};
+  };
+}
 
 Outputs::Outputs(std::string folder, const AppParams& params)
     : folder_(made_folder(std::move(folder))),
@@ -71,11 +67,7 @@ void Outputs::write_views(const view::ScanRecord& record, const Points& points,
   options.params = params_;
   view::write_top_view(stem + ".png", description, options);
   view::write_scene(stem + ".3Dscene", description, points.view());
-  io::write_labelled_ply(stem + ".ply", points.view(), description.labels,
-                         [](Support support, TerrainClass terrain_class) {
-                           const view::Rgb colour = view::colour_of(terrain_class, support);
-                           return io::PointColor{colour.r, colour.g, colour.b};
-                         });
+  io::write_labelled_ply(stem + ".ply", points.view(), description.labels, label_colours());
 }
 
 void Outputs::finish(const view::RunSummary& summary) {

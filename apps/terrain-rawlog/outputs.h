@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "app_params.h"
 #include "mrpt_terrain/files/whole_file.h"
+#include "mrpt_terrain/io/ply.h"
 #include "mrpt_terrain/view/run_summary.h"
 #include "mrpt_terrain/view/scan_record.h"
-#include "scan_pipeline.h"
 
 /// A described scan that waits to be drawn.
 struct DrawableScan {
@@ -22,6 +23,9 @@ struct View {
   std::string why;  ///< such as "first scan"
   std::string picture;
 };
+
+/// The colours of pictures for the points of labelled clouds.
+[[nodiscard]] mrpt_terrain::io::PointPalette label_colours();
 
 /// The folder with everything that `process` writes. Tables grow while the run goes on and get
 /// their names in `finish`; views appear one by one.

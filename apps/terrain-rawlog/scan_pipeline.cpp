@@ -39,8 +39,8 @@ CPose3D levelling(const GroundPlane& plane) {
 }  // namespace
 
 io::Conversion convert(const mrpt::obs::CObservation& observation, ScanPipeline& pipeline) {
-  const io::Conversion result = io::convert_observation(observation, pipeline.params.input,
-                                                        pipeline.models, pipeline.sensor_points);
+  const io::Conversion result =
+      io::convert_observation(observation, pipeline.input, pipeline.models, pipeline.sensor_points);
   CPose3D& T_robot_sensor = pipeline.sensor_points.T_robot_sensor;
   if (pipeline.sensor_pose) T_robot_sensor = *pipeline.sensor_pose;
   if (pipeline.T_level_robot) T_robot_sensor = *pipeline.T_level_robot + T_robot_sensor;
@@ -49,10 +49,10 @@ io::Conversion convert(const mrpt::obs::CObservation& observation, ScanPipeline&
 
 GroundPlane level_by_ground(ScanPipeline& pipeline) {
   io::SensorPoints& sensor = pipeline.sensor_points;
-  io::to_robot_frame(sensor, nullptr, pipeline.params.input, pipeline.scan);
+  io::to_robot_frame(sensor, nullptr, pipeline.input, pipeline.scan);
   GroundPlaneWorkspace workspace;
   const GroundPlane plane =
-      find_ground_plane(pipeline.scan.points.view(), pipeline.params.ground_plane, workspace);
+      find_ground_plane(pipeline.scan.points.view(), pipeline.ground_plane, workspace);
   if (!plane.found) return plane;
   pipeline.T_level_robot = levelling(plane);
   sensor.T_robot_sensor = *pipeline.T_level_robot + sensor.T_robot_sensor;
@@ -70,17 +70,21 @@ ScanView view_of(const io::Scan& scan) {
   return {scan.points.view(), origins};
 }
 
-void describe_scan(ScanPipeline& pipeline, view::ScanRecord& record) {
+void place_scan(ScanPipeline& pipeline, view::ScanRecord& record) {
   const Clock::time_point start = Clock::now();
   const io::Trajectory* trajectory = pipeline.trajectory.empty() ? nullptr : &pipeline.trajectory;
-  io::to_robot_frame(pipeline.sensor_points, trajectory, pipeline.params.input, pipeline.scan);
+  io::to_robot_frame(pipeline.sensor_points, trajectory, pipeline.input, pipeline.scan);
   record.milliseconds.transform = milliseconds_since(start);
-
-  StageTimer timer(record.milliseconds);
-  describe(view_of(pipeline.scan), pipeline.params.description, pipeline.workspace,
-           pipeline.description, &timer);
-  record.milliseconds.total = milliseconds_since(start);
   record.stamp = pipeline.scan.stamp;
   record.left_out = left_out(pipeline.scan.counts);
-  record.counts = view::count(pipeline.description);
+}
+
+void describe_scan(ScanPipeline& pipeline, ScanDescriber& describer, view::ScanRecord& record) {
+  const Clock::time_point start = Clock::now();
+  place_scan(pipeline, record);
+  StageTimer timer(record.milliseconds);
+  describe(view_of(pipeline.scan), describer.params, describer.workspace, describer.description,
+           &timer);
+  record.milliseconds.total = milliseconds_since(start);
+  record.counts = view::count(describer.description);
 }

@@ -44,14 +44,25 @@ void save_scene(const CTerrainMap& map, const std::string& file) {
   });
 }
 
+// What octomap's `writeBinaryConst` writes; that one talks on standard error.
+std::string binary_file_of(const octomap::OcTree& tree) {
+  std::ostringstream out;
+  out << "# Octomap OcTree binary file\n# (feel free to add / change comments, but leave the first "
+         "line as it is!)\n#\nid "
+      << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << tree.getResolution()
+      << "\ndata\n";
+  tree.writeBinaryData(out);
+  return out.str();
+}
+
 void save_octree(const octomap::OcTree& tree, const std::string& prefix) {
-  std::ostringstream with_odds, binary;
-  // octomap's own `write` and `writeBinaryConst`, without their way of dealing with files.
-  if (!tree.write(with_odds) || !tree.writeBinaryConst(binary)) {
+  std::ostringstream with_odds;
+  // octomap's own `write` without its way of dealing with files.
+  if (!tree.write(with_odds)) {
     throw std::runtime_error(prefix + ".ot: the OctoMap could not be stored");
   }
   files::write_atomically(prefix + ".ot", with_odds.str());
-  files::write_atomically(prefix + ".bt", binary.str());
+  files::write_atomically(prefix + ".bt", binary_file_of(tree));
 }
 
 /// Costs in percent over an axis-parallel rectangle of the map, the upper left cell first.

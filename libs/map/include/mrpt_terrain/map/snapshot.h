@@ -67,8 +67,8 @@ class TerrainSnapshot {
   Eigen::Isometry3d T_map_robot = Eigen::Isometry3d::Identity();  ///< at the last scan
   Eigen::Isometry3d T_map_window = Eigen::Isometry3d::Identity();
   Description description;  ///< of the window
-  Points points;            ///< those of the last scan, window frame
-  /// Origins of its rays, window frame, and per point its origin (empty: all the first one).
+  Points points;            ///< those of the last scan, robot frame
+  /// Origins of its rays, robot frame, and per point its origin (empty: all the first one).
   std::vector<std::array<float, 3>> ray_origins;
   std::vector<std::uint32_t> origin_of;
   std::vector<ClusterView> clusters;  ///< one per `description.things`, same numbers
