@@ -15,6 +15,9 @@
 #ifdef HAVE_octree
 #include "mrpt_terrain/octree/insert_scan.h"
 #endif
+#ifdef HAVE_map
+#include "mrpt_terrain/map/terrain_map.h"
+#endif
 
 namespace {
 
@@ -33,6 +36,25 @@ mrpt_terrain::Points box_on_ground() {
   }
   return points;
 }
+
+#ifdef HAVE_map
+/// The box in a terrain map, seen from a robot that stands elsewhere in the map.
+bool box_is_in_the_map() {
+  using namespace mrpt_terrain;
+  CTerrainMap map;
+  io::Scan scan;
+  scan.points = box_on_ground();
+  scan.ray_origins.push_back({0.0F, 0.0F, 1.0F});
+  map.insert_scan(scan, mrpt::poses::CPose3D(10, 20, 0, 0, 0, 0));
+  const TerrainSnapshotPtr now = map.snapshot();
+  const CellView top = now->cell_at(11.15, 20.15);
+  return top.status == PlaceStatus::kKnown && top.terrain_class == TerrainClass::kObstacle &&
+         now->cost_at(11.15, 20.15, 0.0).status == CostStatus::kLethal &&
+         now->cost_at(9.0, 20.0, 0.0).status == CostStatus::kOk &&
+         now->cell_at(0.0, 0.0).status == PlaceStatus::kOutside &&
+         map.clusters_in({{11.0, 20.0}, {11.3, 20.3}}).size() == 1 && map.octree() != nullptr;
+}
+#endif
 
 }  // namespace
 
@@ -54,6 +76,9 @@ int main() {
   const std::array<float, 3> origin = {0.05F, 0.05F, 0.05F};
   mrpt_terrain::octree::insert_scan({&x, &y, &z, 1}, {&origin, 1}, {}, memory, tree);
   if (tree.getNumLeafNodes() != 11) return EXIT_FAILURE;
+#endif
+#ifdef HAVE_map
+  if (!box_is_in_the_map()) return EXIT_FAILURE;
 #endif
   mrpt_terrain::DescriptionWorkspace workspace;
   mrpt_terrain::Description description;
