@@ -112,8 +112,8 @@ Lanes random_lanes(RandomGenerator& random) {
 }
 
 /// Walks all lanes to their ends with both walkers, which must leave the same.
-void expect_same_walk(ChunkWalker walker, ChunkWalker oracle, Lanes lanes) {
-  Lanes expected = lanes;
+void expect_same_walk(ChunkWalker walker, ChunkWalker oracle, const Lanes& start) {
+  Lanes lanes = start, expected = start;
   Trail trail, expected_trail;
   while (expected.alive != 0) {
     walker(lanes, trail);
