@@ -100,6 +100,8 @@ TEST(TileState, DamageIsRefusedAndChangesNothing) {
        }},
       {RestoreStatus::kBadBins, [](TileState& s) { s.bins[0].count = 0; }},
       {RestoreStatus::kBadBins, [](TileState& s) { s.bins[0].layer = 1 << 24; }},
+      {RestoreStatus::kBadBins, [](TileState& s) { s.bins[1].z_max = s.bins[1].z_min - 1.0F; }},
+      {RestoreStatus::kBadBins, [](TileState& s) { s.bins[1].m_zz = -1.0F; }},
       {RestoreStatus::kBadBins,
        [](TileState& s) {
          s.cells.resize(1);

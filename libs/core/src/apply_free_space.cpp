@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "fused_access.h"
 
@@ -61,16 +62,21 @@ bool is_layer_hit(const Tile& tile, const HeightBin& bin, double time) {
          tile.bin(bin.next).last_seen >= time;
 }
 
-/// Of the cells around: how many are known, and how many have their lowest bin below a height.
-struct Around {
-  int known = 0;
-  int below = 0;
-};
+// Lowest point of the lowest bin of a cell, or nothing.
+std::optional<double> lowest_of(const Tile& tile, std::size_t place, const MapLattice& lattice) {
+  const BinIndex first = tile.cells[place].first;
+  if (first == kNoBin) return std::nullopt;
+  return lattice.bottom_of(tile.bin(first).layer) + double{tile.bin(first).z_min};
+}
 
-Around look_around(const Column& column, double height) {
+// Whether a height lies clearly above the ground around a cell: two thirds of the cells known there
+// have something well below it.
+bool stands_out(const Column& column, double height) {
   const double cells = column.params.ground_reach / column.lattice.cell_size();
   const auto reach = static_cast<std::int32_t>(std::lround(cells));
-  Around around;
+  const std::int32_t most = (2 * reach + 1) * (2 * reach + 1) / 3;
+  std::int32_t below = 0;
+  std::int32_t level = 0;
   const Tile* tile = nullptr;
   TileIndex index{std::numeric_limits<std::int32_t>::max(), 0};
   for (std::int32_t i = column.cell.i - reach; i <= column.cell.i + reach; ++i) {
@@ -79,21 +85,13 @@ Around look_around(const Column& column, double height) {
       if (next != index) tile = column.map.tiles.find(next);
       index = next;
       if (tile == nullptr) continue;
-      const BinIndex first = tile->cells[place_in_tile({i, j})].first;
-      if (first == kNoBin) continue;
-      const HeightBin& lowest = tile->bin(first);
-      ++around.known;
-      around.below +=
-          column.lattice.bottom_of(lowest.layer) + double{lowest.z_min} < height ? 1 : 0;
+      const auto lowest = lowest_of(*tile, place_in_tile({i, j}), column.lattice);
+      if (!lowest) continue;
+      ++(*lowest < height - column.params.guard_height ? below : level);
+      if (level > most) return false;  // whatever the others are
     }
   }
-  return around;
-}
-
-// Whether a height lies clearly above the ground around a cell.
-bool stands_out(const Column& column, double height) {
-  const Around around = look_around(column, height - column.params.guard_height);
-  return around.known >= kLeastAround && 3 * around.below >= 2 * around.known;
+  return below + level >= kLeastAround && below >= 2 * level;
 }
 
 Verdict judge(const Column& column, const HeightBin& bin, bool cell_hit, const Ground& ground) {

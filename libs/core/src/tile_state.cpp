@@ -23,10 +23,15 @@ bool is_within(std::int32_t value) {
   return value > -MapLattice::kMost && value < MapLattice::kMost;
 }
 
+bool is_possible(const HeightBin& bin) {
+  return bin.count > 0 && is_within(bin.layer) && bin.z_min <= bin.z_max && bin.m_xx >= 0.0F &&
+         bin.m_yy >= 0.0F && bin.m_zz >= 0.0F;
+}
+
 // Bins [first, last) of one cell: sorted by layer, at most two in each, none empty.
 bool are_in_order(const HeightBin* first, const HeightBin* last) {
   for (const HeightBin* bin = first; bin != last; ++bin) {
-    if (bin->count == 0 || !is_within(bin->layer)) return false;
+    if (!is_possible(*bin)) return false;
     if (bin != first && bin->layer < bin[-1].layer) return false;
     if (bin - first >= 2 && bin->layer == bin[-2].layer) return false;
   }
@@ -40,6 +45,9 @@ RestoreStatus check(const TileState& state) {
     return RestoreStatus::kBadIndex;
   }
   if (state.bins.size() > kMostBins) return RestoreStatus::kTooMany;
+  if (!std::all_of(state.bins.begin(), state.bins.end(), is_finite)) {
+    return RestoreStatus::kNotFinite;
+  }
   std::size_t first = 0;
   int last_place = -1;
   for (const TileState::Cell& cell : state.cells) {
@@ -58,8 +66,7 @@ RestoreStatus check(const TileState& state) {
     first = end;
   }
   if (first != state.bins.size()) return RestoreStatus::kBadCells;
-  const bool finite = std::all_of(state.bins.begin(), state.bins.end(), is_finite);
-  return finite ? RestoreStatus::kOk : RestoreStatus::kNotFinite;
+  return RestoreStatus::kOk;
 }
 
 }  // namespace

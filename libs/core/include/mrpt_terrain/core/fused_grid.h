@@ -110,7 +110,7 @@ struct FusionParams {
 struct PosedScan {
   PointsView points;  ///< robot frame (x forward, y left, z up, z = 0 on the ground), metres
   Eigen::Isometry3d T_map_robot = Eigen::Isometry3d::Identity();
-  double time = 0.0;  ///< stamp, seconds
+  double time = 0.0;  ///< stamp, seconds; later scans have later ones
 };
 
 /// The grid as it was when the snapshot was taken. Copying costs nothing that depends on the size
@@ -179,7 +179,8 @@ struct FusionWorkspace {
 /// Cost: proportional to points and cells touched (and to the cells within `max_range`, at four
 /// bytes each, once, when the memory is made); to the strip that the window leaves; not to the map
 /// or the way driven. Points that are not finite, too high, too low or outside are counted and
-/// otherwise ignored. The result does not depend on the order of the points.
+/// otherwise ignored. The result does not depend on the order of the points. The pose has to be
+/// finite and within the lattice.
 FusionCounts fuse_scan(const PosedScan& scan, const FusionParams& params,
                        FusionWorkspace& workspace, FusedGrid& grid);
 

@@ -30,7 +30,7 @@ enum class RestoreStatus : std::uint8_t {
   kOk = 0,
   kBadIndex,   ///< tile outside the lattice
   kBadCells,   ///< cells not ascending, or numbers of bins that do not add up
-  kBadBins,    ///< bins not sorted by layer, empty, or more than two in a layer
+  kBadBins,    ///< bins not sorted by layer, more than two in a layer, or impossible
   kNotFinite,  ///< a number that is not finite
   kTooMany,    ///< more bins than a tile can hold
 };
