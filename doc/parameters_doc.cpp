@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "app_params.h"
+#include "mrpt_terrain/core/costs.h"
 #include "mrpt_terrain/params/documentation.h"
 
 namespace {
@@ -21,6 +22,14 @@ from. "In the paper": the symbol in Meng, Cao et al. 2018. Keys that end in `_de
 
 )";
 
+constexpr const char* kRobots = R"(
+# Robots
+
+A robot has a file of its own, with one section; `params/robots/` has some to start from, and
+[costs.md](costs.md) says how the limits become costs. The defaults are those of `small_rover.ini`.
+
+)";
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -29,7 +38,8 @@ int main(int argc, char** argv) {
     return EXIT_FAILURE;
   }
   std::ofstream file(argv[1], std::ios::binary);
-  file << kIntroduction << mrpt_terrain::params::markdown_table(AppParams{});
+  file << kIntroduction << mrpt_terrain::params::markdown_table(AppParams{}) << kRobots
+       << mrpt_terrain::params::markdown_table(mrpt_terrain::RobotParams{});
   file.close();
   if (!file) {
     std::cerr << argv[1] << ": cannot be written\n";

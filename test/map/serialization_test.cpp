@@ -6,6 +6,7 @@
 #include <octomap/OcTree.h>
 
 #include <sstream>
+#include <string>
 
 #include "mrpt_terrain/map/terrain_map.h"
 #include "terrain_maps.h"
@@ -43,8 +44,10 @@ std::string refusal_of(const std::string& bytes) {
   return "";
 }
 
-CTerrainMap seen_map() {
+CTerrainMap seen_map(Fusion fusion = Fusion::kScan) {
   MapParams params = small_map();
+  params.creation.fusion = fusion;
+  params.fusion.length = params.fusion.width = 20.0;
   params.description.slope.method = SlopeMethod::kBeam;
   params.robot.max_step = 0.123;
   CTerrainMap map(params);
@@ -78,8 +81,10 @@ void expect_equal(const CTerrainMap& a, const CTerrainMap& b) {
   EXPECT_EQ(bytes_of(a), bytes_of(b));
 }
 
-TEST(Serialization, NotABitChanges) {
-  const CTerrainMap map = seen_map();
+class SerializationOf : public ::testing::TestWithParam<Fusion> {};
+
+TEST_P(SerializationOf, NotABitChanges) {
+  const CTerrainMap map = seen_map(GetParam());
   const CTerrainMap read = map_from(bytes_of(map));
   expect_equal(map, read);
   EXPECT_EQ(read.params().robot.max_step, 0.123);
@@ -88,18 +93,19 @@ TEST(Serialization, NotABitChanges) {
   EXPECT_TRUE(map_from(bytes_of(empty)).isEmpty());
 }
 
-TEST(Serialization, AMapThatWasReadGoesOnAsBefore) {
-  CTerrainMap map = seen_map();
-  CTerrainMap read = map_from(bytes_of(map));
-  for (CTerrainMap* each : {&map, &read}) {
+TEST_P(SerializationOf, AMapThatWasReadGoesOnAsBefore) {
+  CTerrainMap map = seen_map(GetParam());
+  CTerrainMap read = map_from(bytes_of(map)), copy(map);
+  for (CTerrainMap* each : {&map, &read, &copy}) {
     each->insertObservation(observation_of(scene_points(5), lidar_pose()), CPose3D());
   }
   expect_equal(map, read);
+  expect_equal(map, copy);
 }
 
-TEST(Serialization, SurvivesTheCopyOfAMultiMetricMap) {
+TEST_P(SerializationOf, SurvivesTheCopyOfAMultiMetricMap) {
   mrpt::maps::CMultiMetricMap maps;
-  maps.maps.push_back(std::make_shared<CTerrainMap>(seen_map()));
+  maps.maps.push_back(std::make_shared<CTerrainMap>(seen_map(GetParam())));
   const mrpt::maps::CMultiMetricMap copy(maps);
   mrpt::io::CMemoryStream stream;
   mrpt::serialization::archiveFrom(stream) << maps;
@@ -109,6 +115,10 @@ TEST(Serialization, SurvivesTheCopyOfAMultiMetricMap) {
   expect_equal(*maps.mapByClass<CTerrainMap>(), *copy.mapByClass<CTerrainMap>());
   expect_equal(*maps.mapByClass<CTerrainMap>(), *read.mapByClass<CTerrainMap>());
 }
+
+INSTANTIATE_TEST_SUITE_P(Fusions, SerializationOf,
+                         ::testing::Values(Fusion::kScan, Fusion::kRolling),
+                         [](const auto& fusion) { return std::string(name_of(fusion.param)); });
 
 // Every byte of a small map, changed one at a time: never a crash, never a map.
 TEST(Serialization, DamagedBytesAreRefused) {

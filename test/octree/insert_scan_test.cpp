@@ -76,8 +76,7 @@ OctreeScan vlp16_scan() {
   if (!std::filesystem::exists(file)) return scan;
   mrpt::io::CFileGZInputStream stream(file.string());
   auto archive = mrpt::serialization::archiveFrom(stream);
-  const auto observation =
-      std::dynamic_pointer_cast<mrpt::obs::CObservation>(archive.ReadObject());
+  const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(archive.ReadObject());
   io::SensorPoints points;
   const auto conversion = io::convert_observation(*observation, {}, {}, points);
   EXPECT_EQ(conversion.status, io::ConversionStatus::kOk) << conversion.reason;
@@ -234,6 +233,25 @@ TEST(InsertScan, TreesThatAreNotPrunedBecomeWhatOctomapMakesOfThem) {
   }
 }
 
+TEST(InsertScan, APrunedCubeAtItsLimitStaysWhole) {
+  OcTree own(0.1);
+  for (int k = 0; k < 16 * 16 * 16; ++k) {
+    const octomap::OcTreeKey key(static_cast<std::uint16_t>(32768 + k % 16),
+                                 static_cast<std::uint16_t>(32768 + k / 16 % 16),
+                                 static_cast<std::uint16_t>(32768 + k / 256));
+    own.updateNode(key, 10.0F);
+  }
+  OcTree reference(own);
+  EXPECT_EQ(own.getNumLeafNodes(), 1U);
+  OctreeScan scan;
+  scan.origins = {{-1.05F, 0.05F, 0.05F}};
+  scan.push_back(0.05F, 0.05F, 0.05F);
+  InsertionWorkspace workspace;
+  insert_scan(scan.ends(), scan.starts(), {}, workspace, own);
+  test::insert_by_octomap(scan, {}, reference);
+  EXPECT_TRUE(test::same_tree(own, reference));
+}
+
 TEST(InsertScan, WhatCannotBeEqualIsLeftToOctomap) {
   RandomGenerator random(1);
   const OctreeScan scan = test::random_scan(random, 0.1, 1);
@@ -379,9 +397,10 @@ TEST(InsertScan, OracleFreedCellsAreThoseThatWereOccupiedBefore) {
       std::set<CellCode> reported;
       for (const FreedCube& cube : freed) {
         for (int n = 0; n < cube.cells * cube.cells * cube.cells; ++n) {
-          const CellKey key = {static_cast<std::uint16_t>(cube.key[0] + n % cube.cells),
-                               static_cast<std::uint16_t>(cube.key[1] + n / cube.cells % cube.cells),
-                               static_cast<std::uint16_t>(cube.key[2] + n / cube.cells / cube.cells)};
+          const CellKey key = {
+              static_cast<std::uint16_t>(cube.key[0] + n % cube.cells),
+              static_cast<std::uint16_t>(cube.key[1] + n / cube.cells % cube.cells),
+              static_cast<std::uint16_t>(cube.key[2] + n / cube.cells / cube.cells)};
           EXPECT_TRUE(reported.insert(code_of(key)).second);
         }
       }

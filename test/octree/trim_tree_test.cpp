@@ -44,7 +44,8 @@ OcTree trimmed_by_brute_force(const OcTree& tree, const CellWindow& window) {
 CellWindow random_window(RandomGenerator& random) {
   CellWindow window;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    window.low[axis] = static_cast<std::uint16_t>(kMiddle - 10 + static_cast<int>(random.below(14)));
+    window.low[axis] =
+        static_cast<std::uint16_t>(kMiddle - 10 + static_cast<int>(random.below(14)));
     window.high[axis] = static_cast<std::uint16_t>(window.low[axis] + random.below(12));
   }
   return window;

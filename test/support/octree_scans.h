@@ -110,7 +110,8 @@ inline std::string bytes_of(const octomap::OcTree& tree) {
 /// Whether trees are equal by their operator, in both formats of files and in their own counts.
 inline testing::AssertionResult same_tree(const octomap::OcTree& a, const octomap::OcTree& b) {
   if (!(a == b)) {
-    return testing::AssertionFailure() << "trees of " << a.size() << " and " << b.size() << " nodes";
+    return testing::AssertionFailure()
+           << "trees of " << a.size() << " and " << b.size() << " nodes";
   }
   if (bytes_of(a) != bytes_of(b)) return testing::AssertionFailure() << "bytes differ";
   if (a.size() != a.calcNumNodes()) return testing::AssertionFailure() << "wrong number of nodes";
@@ -138,8 +139,7 @@ inline std::vector<OctreeScan> kitti_scans(const std::string& sequence, std::siz
     std::ifstream file(folder / "velodyne" / name, std::ios::binary);
     std::array<float, 4> p{};
     OctreeScan scan;
-    scan.origins = {
-        {static_cast<float>(tx), static_cast<float>(ty), static_cast<float>(tz)}};
+    scan.origins = {{static_cast<float>(tx), static_cast<float>(ty), static_cast<float>(tz)}};
     while (file.read(reinterpret_cast<char*>(p.data()), sizeof(p))) {
       const double px = p[0], py = p[1], pz = p[2];
       scan.push_back(static_cast<float>(r[0] * px + r[1] * py + r[2] * pz + tx),
@@ -174,8 +174,8 @@ inline octomap::OcTree random_tree(RandomGenerator& random) {
   return tree;
 }
 
-/// A coordinate up to `reach` cells from zero: anywhere, or on a border or centre of a cell, so that
-/// rays cross edges and corners.
+/// A coordinate up to `reach` cells from zero: anywhere, or on a border or centre of a cell, so
+/// that rays cross edges and corners.
 inline float random_coordinate(RandomGenerator& random, double resolution, int reach, bool snap) {
   const double cells = reach * (2.0 * random.uniform() - 1.0);
   return static_cast<float>(resolution * (snap ? std::round(2.0 * cells) / 2.0 : cells));

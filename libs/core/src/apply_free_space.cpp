@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <limits>
 
 #include "fused_access.h"
 
@@ -10,6 +12,9 @@ namespace mrpt_terrain {
 namespace {
 
 using Access = FusedGridAccess;
+
+// Fewer known cells around say nothing about the ground there.
+constexpr int kLeastAround = 4;
 
 /// What becomes of a bin.
 enum class Verdict : std::uint8_t {
@@ -21,8 +26,10 @@ enum class Verdict : std::uint8_t {
 
 /// One cell with its free layers.
 struct Column {
+  const FusedSnapshot& map;
   const MapLattice& lattice;
   const FusionParams& params;
+  MapCell cell;
   double time;
   const LayerSpan* begin;
   const LayerSpan* end;
@@ -54,6 +61,41 @@ bool is_layer_hit(const Tile& tile, const HeightBin& bin, double time) {
          tile.bin(bin.next).last_seen >= time;
 }
 
+/// Of the cells around: how many are known, and how many have their lowest bin below a height.
+struct Around {
+  int known = 0;
+  int below = 0;
+};
+
+Around look_around(const Column& column, double height) {
+  const double cells = column.params.ground_reach / column.lattice.cell_size();
+  const auto reach = static_cast<std::int32_t>(std::lround(cells));
+  Around around;
+  const Tile* tile = nullptr;
+  TileIndex index{std::numeric_limits<std::int32_t>::max(), 0};
+  for (std::int32_t i = column.cell.i - reach; i <= column.cell.i + reach; ++i) {
+    for (std::int32_t j = column.cell.j - reach; j <= column.cell.j + reach; ++j) {
+      const TileIndex next = tile_of({i, j});
+      if (next != index) tile = column.map.tiles.find(next);
+      index = next;
+      if (tile == nullptr) continue;
+      const BinIndex first = tile->cells[place_in_tile({i, j})].first;
+      if (first == kNoBin) continue;
+      const HeightBin& lowest = tile->bin(first);
+      ++around.known;
+      around.below +=
+          column.lattice.bottom_of(lowest.layer) + double{lowest.z_min} < height ? 1 : 0;
+    }
+  }
+  return around;
+}
+
+// Whether a height lies clearly above the ground around a cell.
+bool stands_out(const Column& column, double height) {
+  const Around around = look_around(column, height - column.params.guard_height);
+  return around.known >= kLeastAround && 3 * around.below >= 2 * around.known;
+}
+
 Verdict judge(const Column& column, const HeightBin& bin, bool cell_hit, const Ground& ground) {
   const LayerSpan* free = column.span_at(bin.layer);
   if (free == nullptr) return Verdict::kUntouched;
@@ -61,8 +103,9 @@ Verdict judge(const Column& column, const HeightBin& bin, bool cell_hit, const G
   const double bottom = column.lattice.bottom_of(bin.layer);
   const double free_from = column.lattice.bottom_of(free->low);
   if (!ground.found) {  // rule 1
-    const bool undercut = free_from <= bottom + double{bin.z_min} - guard;
-    return undercut ? Verdict::kRemoved : Verdict::kGuarded;
+    const double lowest = bottom + double{bin.z_min};
+    const bool goes = free_from <= lowest - guard || stands_out(column, lowest);
+    return goes ? Verdict::kRemoved : Verdict::kGuarded;
   }
   if (bottom + double{bin.z_max} > ground.z_min + guard) {  // rule 2
     const bool passed = free->low < bin.layer || free_from <= ground.z_min + guard;
@@ -73,8 +116,8 @@ Verdict judge(const Column& column, const HeightBin& bin, bool cell_hit, const G
   return bin.freed + 1 >= limit ? Verdict::kRemoved : Verdict::kDoubted;
 }
 
-// Calls visit(link, verdict) for the bins of a cell from the bottom up; `visit` may remove the bin
-// that the link leads to. Returns the ground that stays.
+// Calls visit(link, verdict) for the bins of a cell from the bottom up; `visit` says whether it has
+// taken the bin that the link leads to out of the list. Returns the ground that stays.
 template <class AnyTile, class Visit>
 Ground judge_all(const Column& column, AnyTile& tile, std::size_t place, Visit&& visit) {
   const bool cell_hit = is_hit(tile, place, column.time);
@@ -88,8 +131,7 @@ Ground judge_all(const Column& column, AnyTile& tile, std::size_t place, Visit&&
     if (verdict != Verdict::kRemoved && !ground.found) {
       ground = {true, column.lattice.bottom_of(bin.layer) + double{bin.z_min}, bin.layer};
     }
-    visit(link, verdict);
-    if (verdict != Verdict::kRemoved) link = &bin.next;
+    if (!visit(link, verdict)) link = &bin.next;
   }
   return ground;
 }
@@ -124,6 +166,7 @@ bool changes(const Column& column, const Tile& tile, std::size_t place, FreeSpac
   const Ground ground = judge_all(column, tile, place, [&](const BinIndex*, Verdict verdict) {
     any |= verdict == Verdict::kDoubted || verdict == Verdict::kRemoved;
     guarded += verdict == Verdict::kDoubted || verdict == Verdict::kGuarded ? 1U : 0U;
+    return false;
   });
   counts.bins_guarded += guarded;
   const LayerSpan known = tile.cells[place].free;
@@ -134,10 +177,11 @@ void apply(const Column& column, Tile& tile, std::size_t place, FreeSpaceCounts&
   const Ground ground = judge_all(column, tile, place, [&](BinLink link, Verdict verdict) {
     HeightBin& bin = tile.bin(*link);
     if (verdict == Verdict::kDoubted) ++bin.freed;
-    if (verdict != Verdict::kRemoved) return;
+    if (verdict != Verdict::kRemoved) return false;
     ++counts.bins_removed;
     counts.points_removed += bin.count;
     remove_bin(tile, link);
+    return true;
   });
   LayerSpan& known = tile.cells[place].free;
   known = ground.found ? free_above(column, ground.layer, known) : LayerSpan{};
@@ -157,7 +201,8 @@ FreeSpaceCounts apply_free_space(const FreeSpaceGrid& free, const FusionParams& 
     index = next;
     const std::size_t place = place_in_tile(free.cell[k]);
     if (tile == nullptr || tile->cells[place].first == kNoBin) continue;
-    const Column column{free.lattice, params, free.time, free.begin_of(k), free.end_of(k)};
+    const Column column{grid.now(), free.lattice,     params,        free.cell[k],
+                        free.time,  free.begin_of(k), free.end_of(k)};
     if (!changes(column, *tile, place, counts)) continue;
     Tile& writable = Access::writable(grid, index);
     apply(column, writable, place, counts);

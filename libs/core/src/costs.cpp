@@ -2,6 +2,7 @@
 #include "mrpt_terrain/core/costs.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -16,15 +17,6 @@ struct Ground {
   const std::vector<LocalPlane>& planes;
   const std::vector<Slot>& surface;
   double max_gradient;  // tan(max_climb)
-
-  [[nodiscard]] const LocalPlane* surface_of(Slot slot) const {
-    if (slot == kUnobserved) return nullptr;
-    const Slot window = surface[static_cast<std::size_t>(slot)];
-    return window == kUnobserved ? nullptr : &planes[static_cast<std::size_t>(window)];
-  }
-  [[nodiscard]] Slot slot_beside(std::size_t slot, std::int32_t offset) const {
-    return grid.slot_of[static_cast<std::size_t>(value_of(grid.cell[slot]) + offset)];
-  }
 };
 
 // Mean of the points of a cell, metres.
@@ -37,139 +29,143 @@ Place mean_of(const ElevationGrid& grid, std::size_t slot) {
   return {sums.x * share, sums.y * share, sums.z * share};
 }
 
-// How badly a plane is known: its variance over the number of cells that it was found from.
-double doubt(const LocalPlane& plane) {
-  return double{plane.roughness} * double{plane.roughness} / plane.cells;
+// Whether `a` is known better than `b`: by the variance over the number of cells that tell it.
+bool is_better(const LocalPlane& a, const LocalPlane& b) {
+  return a.roughness * a.roughness * static_cast<float>(b.cells) <
+         b.roughness * b.roughness * static_cast<float>(a.cells);
 }
 
-// The window whose plane is known best of those that contain the cell. Windows with fewer
-// cells than its own are left out, because few points lie on a plane by chance.
+// The window whose plane is known best of those that contain the cell. Windows with fewer cells
+// than its own are left out, because few points lie on a plane by chance.
 Slot best_window(const ElevationGrid& grid, int reach, std::size_t slot,
                  const std::vector<LocalPlane>& planes) {
   const CellIndex centre = grid.geometry.index_of(grid.cell[slot]);
   const LocalPlane& own = planes[slot];
-  const bool own_is_ok = own.status == FeatureStatus::kOk;
-  Slot best = own_is_ok ? static_cast<Slot>(slot) : kUnobserved;
-  double least = own_is_ok ? doubt(own) : std::numeric_limits<double>::infinity();
+  Slot best = own.status == FeatureStatus::kOk ? static_cast<Slot>(slot) : kUnobserved;
   for (int dl = -reach; dl <= reach; dl += reach) {
     for (int dw = -reach; dw <= reach; dw += reach) {
       const Slot other = grid.slot_at({centre.l + dl, centre.w + dw});
       if (other == kUnobserved) continue;
       const LocalPlane& plane = planes[static_cast<std::size_t>(other)];
       if (plane.status != FeatureStatus::kOk || plane.cells < own.cells) continue;
-      const double its_doubt = doubt(plane);
-      if (its_doubt >= least) continue;
-      least = its_doubt;
-      best = other;
+      if (best == kUnobserved || is_better(plane, planes[static_cast<std::size_t>(best)])) {
+        best = other;
+      }
     }
   }
   return best;
 }
 
+// A cell, or one of its eight neighbours.
+struct Nearby {
+  Slot slot = kUnobserved;
+  const LocalPlane* surface = nullptr;  // null if it has none
+  double height = 0.0;                  // of the surface, carried on to the cell, metres
+};
+
+// A cell and what is around it. Neighbours that lie opposite each other add up to 8.
+struct Surroundings {
+  Place here;
+  std::array<Nearby, 9> nearby;
+  double noise;  // least roughness of the surfaces, metres
+
+  [[nodiscard]] const Nearby& self() const { return nearby[4]; }
+};
+
+Surroundings surroundings_of(const Ground& ground, std::size_t slot) {
+  Surroundings result;
+  result.here = mean_of(ground.grid, slot);
+  const std::int32_t stride = ground.grid.geometry.stride();
+  float least = std::numeric_limits<float>::infinity();
+  for (std::int32_t k = 0; k < 9; ++k) {
+    const std::int32_t id = value_of(ground.grid.cell[slot]) + (k / 3 - 1) * stride + k % 3 - 1;
+    Nearby& nearby = result.nearby[static_cast<std::size_t>(k)];
+    nearby.slot = ground.grid.slot_of[static_cast<std::size_t>(id)];
+    if (nearby.slot == kUnobserved) continue;
+    const Slot window = ground.surface[static_cast<std::size_t>(nearby.slot)];
+    if (window == kUnobserved) continue;
+    nearby.surface = &ground.planes[static_cast<std::size_t>(window)];
+    nearby.height = nearby.surface->height_at(result.here.x, result.here.y);
+    least = std::min(least, nearby.surface->roughness);
+  }
+  result.noise = std::isfinite(least) ? double{least} : 0.0;
+  return result;
+}
+
 // By how much more two cells without surfaces differ in height than the robot can climb.
 double unclimbable_rise(const Ground& ground, const Place& here, Slot other) {
+  if (other == kUnobserved) return 0.0;
   const Place there = mean_of(ground.grid, static_cast<std::size_t>(other));
   const double dx = there.x - here.x;
   const double dy = there.y - here.y;
   return std::abs(there.z - here.z) - ground.max_gradient * std::sqrt(dx * dx + dy * dy);
 }
 
-// The surfaces before and behind a cell; that of the cell where there is no other.
-struct Sides {
-  const LocalPlane* before;
-  const LocalPlane* behind;
-};
-Sides sides_of(const Ground& ground, std::size_t slot, std::int32_t offset) {
-  const LocalPlane* own = ground.surface_of(static_cast<Slot>(slot));
-  const LocalPlane* before = ground.surface_of(ground.slot_beside(slot, -offset));
-  const LocalPlane* behind = ground.surface_of(ground.slot_beside(slot, offset));
-  return {before != nullptr ? before : own, behind != nullptr ? behind : own};
-}
-
-// Difference between the two surfaces carried on to the cell, and its own height.
-// `tolerance`: how far the own height may be off by noise.
-double spread_of_heights(const Sides& sides, const Place& here, double tolerance) {
-  double lowest = std::numeric_limits<double>::infinity();
-  double highest = -lowest;
-  for (const LocalPlane* side : {sides.before, sides.behind}) {
-    if (side == nullptr) continue;
-    lowest = std::min(lowest, side->height_at(here.x, here.y));
-    highest = std::max(highest, side->height_at(here.x, here.y));
-  }
-  if (highest < lowest) return 0.0;
-  return std::max({highest - lowest, highest - here.z - tolerance, here.z - lowest - tolerance});
-}
-
-// Step of a cell without any surface around in this direction.
-double step_between_heights(const Ground& ground, std::size_t slot, const Place& here,
-                            std::int32_t offset) {
-  double rise = 0.0;
-  for (const std::int32_t way : {offset, -offset}) {
-    const Slot other = ground.slot_beside(slot, way);
-    if (other != kUnobserved) rise = std::max(rise, unclimbable_rise(ground, here, other));
-  }
-  return rise;
-}
-
-// Least roughness of the surfaces of the cell and its eight neighbours: the noise of the points.
-double least_roughness_around(const Ground& ground, std::size_t slot) {
-  const int stride = ground.grid.geometry.stride();
-  double least = std::numeric_limits<double>::infinity();
-  for (const std::int32_t row : {-stride, 0, stride}) {
-    for (const std::int32_t offset : {row - 1, row, row + 1}) {
-      const LocalPlane* surface = ground.surface_of(ground.slot_beside(slot, offset));
-      if (surface != nullptr) least = std::min(least, double{surface->roughness});
-    }
-  }
-  return std::isfinite(least) ? least : 0.0;
+// Difference between two heights carried on to the cell and the cell's own, which noise may have
+// moved by `tolerance`.
+double spread_of(double before, double behind, double own, double tolerance) {
+  const auto [low, high] = std::minmax(before, behind);
+  return std::max({high - low, high - own - tolerance, own - low - tolerance});
 }
 
 // The cell's own extent in height beyond what slope and noise explain.
-double step_within(const Ground& ground, std::size_t slot, double noise) {
+double step_within(const Ground& ground, std::size_t slot, const Surroundings& around) {
   constexpr double kNoiseExtent = 6.0;  // plus and minus three standard deviations
-  const LocalPlane* own = ground.surface_of(static_cast<Slot>(slot));
+  const LocalPlane* own = around.self().surface;
   double gradient = std::sqrt(2.0) * ground.max_gradient;
   if (own != nullptr) {
     const double sum = std::abs(own->gradient_x) + std::abs(own->gradient_y);
     gradient = std::min(gradient, sum);
   }
   const double by_slope = gradient * ground.grid.geometry.cell_size();
-  return ground.grid.h_diff(slot) - by_slope - kNoiseExtent * noise;
+  return ground.grid.h_diff(slot) - by_slope - kNoiseExtent * around.noise;
 }
 
-// The smoother of two sides, if they are apart at the cell by more than their roughness explains.
-const LocalPlane* smoother_of_apart(const Sides& sides, const Place& here) {
-  constexpr double kApart = 4.0;
-  if (sides.before == nullptr || sides.behind == nullptr) return nullptr;
-  const double jump =
-      std::abs(sides.before->height_at(here.x, here.y) - sides.behind->height_at(here.x, here.y));
-  const LocalPlane* rougher = sides.before;
-  const LocalPlane* smoother = sides.behind;
-  if (rougher->roughness < smoother->roughness) std::swap(rougher, smoother);
-  return jump > kApart * double{rougher->roughness} ? smoother : nullptr;
+// Step of the cell; see the header.
+double step_at(const Ground& ground, std::size_t slot, const Surroundings& around) {
+  constexpr double kSurelyNoise = 2.0;  // standard deviations of a mean height
+  const double tolerance = kSurelyNoise * around.noise / std::sqrt(ground.grid.sums[slot].n);
+  double step = std::max(0.0, step_within(ground, slot, around));
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Nearby* before = &around.nearby[k];
+    const Nearby* behind = &around.nearby[8 - k];
+    if (before->surface == nullptr && around.self().surface != nullptr) before = &around.self();
+    if (behind->surface == nullptr && around.self().surface != nullptr) behind = &around.self();
+    if (before->surface == nullptr) std::swap(before, behind);
+    if (before->surface == nullptr) {
+      step = std::max({step, unclimbable_rise(ground, around.here, before->slot),
+                       unclimbable_rise(ground, around.here, behind->slot)});
+      continue;
+    }
+    const double other = behind->surface != nullptr ? behind->height : before->height;
+    step = std::max(step, spread_of(before->height, other, around.here.z, tolerance));
+  }
+  return step;
+}
+
+// The surface that slope and roughness are told from: the cell's own, or, where those before and
+// behind it are apart by more than their roughness explains, the smoothest of the three. The cell
+// then holds the edge of a step, and a plane across it would call the step a slope.
+const LocalPlane* told_surface(const Surroundings& around) {
+  constexpr double kApart = 4.0;  // standard deviations
+  const LocalPlane* best = around.self().surface;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Nearby& before = around.nearby[k];
+    const Nearby& behind = around.nearby[8 - k];
+    if (before.surface == nullptr || behind.surface == nullptr) continue;
+    const auto [smooth, rough] = std::minmax(
+        before.surface, behind.surface,
+        [](const LocalPlane* a, const LocalPlane* b) { return a->roughness < b->roughness; });
+    const bool apart = std::abs(before.height - behind.height) > kApart * double{rough->roughness};
+    if (apart && (best == nullptr || smooth->roughness < best->roughness)) best = smooth;
+  }
+  return best;
 }
 
 void measure(const Ground& ground, std::size_t slot, CellCosts& costs) {
-  constexpr double kSurelyNoise = 2.0;  // standard deviations of a mean height
-  const Place here = mean_of(ground.grid, slot);
-  const int stride = ground.grid.geometry.stride();
-  const LocalPlane* surface = ground.surface_of(static_cast<Slot>(slot));
-  const double noise = least_roughness_around(ground, slot);
-  const double tolerance = kSurelyNoise * noise / std::sqrt(ground.grid.sums[slot].n);
-  double step = std::max(0.0, step_within(ground, slot, noise));
-  for (const std::int32_t offset : {1, stride - 1, stride, stride + 1}) {
-    const Sides sides = sides_of(ground, slot, offset);
-    if (sides.before == nullptr && sides.behind == nullptr) {
-      step = std::max(step, step_between_heights(ground, slot, here, offset));
-      continue;
-    }
-    step = std::max(step, spread_of_heights(sides, here, tolerance));
-    const LocalPlane* side = smoother_of_apart(sides, here);
-    if (side != nullptr && (surface == nullptr || side->roughness < surface->roughness)) {
-      surface = side;
-    }
-  }
-  costs.step[slot] = static_cast<float>(step);
+  const Surroundings around = surroundings_of(ground, slot);
+  costs.step[slot] = static_cast<float>(step_at(ground, slot, around));
+  const LocalPlane* surface = told_surface(around);
   const bool known = surface != nullptr;
   costs.gradient_x[slot] = known ? surface->gradient_x : 0.0F;
   costs.gradient_y[slot] = known ? surface->gradient_y : 0.0F;
@@ -211,7 +207,7 @@ Cost at_position(const ElevationGrid& grid, Position2 position, CostOfSlot&& cos
 }  // namespace
 
 int window_reach(const RobotParams& robot, double cell_size) {
-  const double cells = std::round(0.25 * robot.footprint_width / cell_size);
+  const double cells = std::round(0.5 * robot.footprint_width / cell_size);
   return static_cast<int>(std::clamp(cells, 1.0, double{kMaxReach}));
 }
 

@@ -105,7 +105,7 @@ class LayerWalk {
 };
 
 double points_of_fullest_layer(LayerWalk walk) {
-  double most = 0.0;
+  double most = walk.skip_layer();
   while (!walk.done()) most = std::max(most, walk.skip_layer());
   return most;
 }

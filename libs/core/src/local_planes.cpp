@@ -13,6 +13,8 @@
 namespace mrpt_terrain {
 namespace {
 
+constexpr MomentSums kNothing;
+
 // Sums over the observed ones of some cells.
 struct CellSums {
   MomentSums sums;
@@ -32,7 +34,6 @@ class Windows {
     CellSums window;
     for (int w = first; w <= last; ++w) {
       const CellSums& column = column_at(w);
-      if (column.cells == 0) continue;
       window.sums.add(column.sums);
       window.cells += column.cells;
     }
@@ -58,9 +59,10 @@ class Windows {
     for (int l = std::max(0, row_ - reach_); l <= last; ++l) {
       const Slot slot =
           grid_.slot_of[static_cast<std::size_t>(value_of(grid_.geometry.id_of({l, w})))];
-      if (slot == kUnobserved) continue;
-      column.sums.add(grid_.sums[static_cast<std::size_t>(slot)]);
-      ++column.cells;
+      // Without a branch: which cells are observed is hard to predict, and adding zeros is cheap.
+      const bool observed = slot != kUnobserved;
+      column.sums.add(observed ? grid_.sums[static_cast<std::size_t>(slot)] : kNothing);
+      column.cells += observed ? 1 : 0;
     }
     return column;
   }
@@ -72,35 +74,42 @@ class Windows {
   std::array<CellSums, kKept> columns_{};
 };
 
-// The two smaller eigenvalues of a covariance, m^2.
-struct Spread {
-  double across_plane;  // smallest
-  double across_line;   // middle
+// Coefficients of the characteristic polynomial of a covariance: x^3 - trace x^2 + minors x -
+// determinant.
+struct Invariants {
+  double trace, minors, determinant;
 };
+Invariants invariants_of(const Eigen::Matrix3d& a) {
+  const double minor_x = a(1, 1) * a(2, 2) - a(1, 2) * a(1, 2);
+  const double minor_y = a(0, 0) * a(2, 2) - a(0, 2) * a(0, 2);
+  const double minor_z = a(0, 0) * a(1, 1) - a(0, 1) * a(0, 1);
+  const double determinant = a(0, 0) * minor_x + a(0, 1) * (a(0, 2) * a(1, 2) - a(0, 1) * a(2, 2)) +
+                             a(0, 2) * (a(0, 1) * a(1, 2) - a(0, 2) * a(1, 1));
+  return {a.trace(), minor_x + minor_y + minor_z, determinant};
+}
 
 // Newton's method on the characteristic polynomial. From 0, which is left of all roots, it climbs
 // to the smallest one without overshooting. No sines as in the closed form: those of the C library
 // differ between processors.
-Spread smaller_eigenvalues(const Eigen::Matrix3d& a) {
-  const double trace = a.trace();
-  const double minors = a(0, 0) * a(1, 1) - a(0, 1) * a(0, 1) + a(0, 0) * a(2, 2) -
-                        a(0, 2) * a(0, 2) + a(1, 1) * a(2, 2) - a(1, 2) * a(1, 2);
-  const double determinant = a.determinant();
+double smallest_eigenvalue(const Invariants& of) {
   constexpr int kMaxSteps = 30;
   double root = 0.0;
   for (int k = 0; k < kMaxSteps; ++k) {
-    const double value = ((root - trace) * root + minors) * root - determinant;
-    const double slope = (3.0 * root - 2.0 * trace) * root + minors;
+    const double value = ((root - of.trace) * root + of.minors) * root - of.determinant;
+    const double slope = (3.0 * root - 2.0 * of.trace) * root + of.minors;
     if (!(value < 0.0 && slope > 0.0)) break;
     const double step = -value / slope;
     root += step;
-    if (step <= 1e-6 * root) break;
+    if (step <= 1e-3 * root) break;  // convergence is quadratic: 1e-6 is left
   }
-  const double sum = trace - root;
-  const double product = std::max(0.0, minors - root * sum);
-  const double half = 0.5 * sum;
-  const double largest = half + std::sqrt(std::max(0.0, half * half - product));
-  return {root, largest > 0.0 ? product / largest : 0.0};
+  return root;
+}
+
+// Whether the middle eigenvalue is at least `least`, from sum and product of the upper two.
+bool middle_eigenvalue_reaches(double least, const Invariants& of, double smallest) {
+  const double sum = of.trace - smallest;
+  const double product = of.minors - smallest * sum;
+  return sum >= 2.0 * least && product - least * sum + least * least >= 0.0;
 }
 
 // Eigenvector, of any length and with z >= 0; zero where it is not unique.
@@ -115,10 +124,23 @@ Eigen::Vector3d eigenvector(const Eigen::Matrix3d& a, double eigenvalue) {
 }
 
 void set_gradient(const Eigen::Vector3d& normal, LocalPlane& plane) {
-  const double level = std::sqrt(normal.x() * normal.x() + normal.y() * normal.y());
-  const double divisor = std::max(normal.z(), level / kSteepestGradient);
-  plane.gradient_x = static_cast<float>(-normal.x() / divisor);
-  plane.gradient_y = static_cast<float>(-normal.y() / divisor);
+  const double level2 = normal.x() * normal.x() + normal.y() * normal.y();
+  const double upright = kSteepestGradient * normal.z();
+  const bool steep = level2 > upright * upright;
+  const double divisor = steep ? std::sqrt(level2) / kSteepestGradient : normal.z();
+  const double scale = -1.0 / divisor;
+  plane.gradient_x = static_cast<float>(normal.x() * scale);
+  plane.gradient_y = static_cast<float>(normal.y() * scale);
+}
+
+// As Moments::covariance, with one division.
+Eigen::Matrix3d covariance_of(const Moments& m) {
+  const double share = 1.0 / m.n;
+  Eigen::Matrix3d c;
+  c << m.m_xx, m.m_xy, m.m_xz,  //
+      m.m_xy, m.m_yy, m.m_yz,   //
+      m.m_xz, m.m_yz, m.m_zz;
+  return c * share;
 }
 
 LocalPlane plane_through(const CellSums& window, std::int32_t least_cells, double least_spread) {
@@ -126,10 +148,12 @@ LocalPlane plane_through(const CellSums& window, std::int32_t least_cells, doubl
   plane.cells = window.cells;
   if (window.cells < least_cells) return plane;
   const Moments moments = moments_from(window.sums);
-  const Eigen::Matrix3d covariance = moments.covariance();
-  const Spread spread = smaller_eigenvalues(covariance);
-  const Eigen::Vector3d normal = eigenvector(covariance, spread.across_plane);
-  if (spread.across_line < least_spread || normal.squaredNorm() == 0.0) {
+  const Eigen::Matrix3d covariance = covariance_of(moments);
+  const Invariants invariants = invariants_of(covariance);
+  const double across_plane = smallest_eigenvalue(invariants);
+  const Eigen::Vector3d normal = eigenvector(covariance, across_plane);
+  if (!middle_eigenvalue_reaches(least_spread, invariants, across_plane) ||
+      normal.squaredNorm() == 0.0) {
     plane.status = FeatureStatus::kDegenerate;
     return plane;
   }
@@ -137,7 +161,7 @@ LocalPlane plane_through(const CellSums& window, std::int32_t least_cells, doubl
   plane.x = moments.mean_x;
   plane.y = moments.mean_y;
   plane.z = moments.mean_z;
-  plane.roughness = static_cast<float>(std::sqrt(spread.across_plane));
+  plane.roughness = static_cast<float>(std::sqrt(across_plane));
   set_gradient(normal, plane);
   return plane;
 }
@@ -147,8 +171,8 @@ LocalPlane plane_through(const CellSums& window, std::int32_t least_cells, doubl
 void fit_local_planes(const ElevationGrid& grid, int reach, std::vector<LocalPlane>& planes) {
   assert(reach >= 1 && reach <= kMaxReach);
   const double cell_size = grid.geometry.cell_size();
-  // Variance of the centres of 2 r + 1 rows: r (r + 1) / 3 squared cells.
-  const double least_spread = 0.1 * reach * (reach + 1) / 3.0 * cell_size * cell_size;
+  // A quarter of the variance of the centres of 2 r + 1 rows, r (r + 1) / 3 squared cells.
+  const double least_spread = 0.25 * reach * (reach + 1) / 3.0 * cell_size * cell_size;
   planes.resize(grid.observed());
   Windows windows(grid, reach);
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {

@@ -7,6 +7,10 @@
 namespace mrpt_terrain {
 namespace {
 
+// A tile is put in order when more than one in so many of its bins lies out of order.
+constexpr std::uint32_t kMostDisorder = 4;
+// Enough for most tiles: four bins a cell.
+constexpr std::size_t kUsualBlocks = 4 * kTileCells / kBinsPerBlock;
 constexpr std::size_t kMostBlocks = kMostBins / kBinsPerBlock;
 
 // Number of the child on the way to a tile; `i` and `j` count from the tree's corner.
@@ -71,21 +75,30 @@ const Tile* TileTree::find(TileIndex index) const {
 
 Ref<Tile> TileStore::new_tile() {
   Ref<Tile> tile = take_from(tiles_);
+  tile->blocks.reserve(kUsualBlocks);
   tile->cells.fill(TileCell{});
   tile->first_unused = kNoBin;
   tile->bins = 0;
+  tile->disorder = 0;
   return tile;
 }
 
+// Bins of a cell follow each other in the copy, and cells follow each other too: readers then walk
+// through memory in order. It costs little more than copying the blocks as they are.
 Ref<Tile> TileStore::copy_of(const Tile& tile) {
   Ref<Tile> copy = new_tile();
   copy->cells = tile.cells;
-  copy->first_unused = tile.first_unused;
-  copy->bins = tile.bins;
-  for (const auto& block : tile.blocks) {
-    copy->blocks.push_back(new_block());
-    *copy->blocks.back() = *block;
+  for (TileCell& cell : copy->cells) {
+    BinIndex* link = &cell.first;
+    for (BinIndex k = cell.first; k != kNoBin; k = tile.bin(k).next) {
+      *link = new_bin(*copy);
+      HeightBin& bin = copy->bin(*link);
+      bin = tile.bin(k);
+      link = &bin.next;
+    }
+    *link = kNoBin;
   }
+  copy->disorder = 0;
   return copy;
 }
 
@@ -119,8 +132,11 @@ Tile& TileStore::writable(TileTree& tree, TileIndex index) {
   Ref<SharedNode>& leaf = node->child[child_on_way(i, j, 0)];
   if (!leaf) {
     leaf = Ref<SharedNode>(new_tile().get());
-  } else if (!leaf.is_only_one()) {
-    const Ref<Tile> copy = copy_of(static_cast<const Tile&>(*leaf));
+    return static_cast<Tile&>(*leaf);
+  }
+  const auto& tile = static_cast<const Tile&>(*leaf);
+  if (!leaf.is_only_one() || tile.disorder > tile.bins / kMostDisorder + kBinsPerBlock) {
+    const Ref<Tile> copy = copy_of(tile);
     retire(leaf, tiles_);
     leaf = Ref<SharedNode>(copy.get());
   }
@@ -170,6 +186,7 @@ BinIndex TileStore::new_bin(Tile& tile) {
   tile.first_unused = tile.bin(bin).next;
   tile.bin(bin) = HeightBin{};
   ++tile.bins;
+  ++tile.disorder;
   return bin;
 }
 

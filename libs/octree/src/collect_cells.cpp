@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collect_cells.h"
 
+#include <cassert>
 #include <cmath>
 
 namespace mrpt_terrain::octree {
@@ -30,7 +31,7 @@ class Collector {
       return;
     }
     CellKey end_key{};
-    const bool end_in_range = grid_.find_key(end, end_key);
+    bool end_in_range = grid_.find_key(end, end_key);
     if (!end_in_range) ++result_.out_of_range;
     if (options_.discretize) {
       if (!end_in_range) return;
@@ -39,7 +40,7 @@ class Collector {
         end[axis] = static_cast<float>(grid_.centre(end_key[axis]));
       }
       // The rounded centre of a far, small cell may lie in its neighbour.
-      if (!grid_.find_key(end, end_key)) return;
+      end_in_range = grid_.find_key(end, end_key);
     }
     add_measured(end, end_key, end_in_range);
   }
@@ -96,6 +97,7 @@ InsertionResult collect_cells(const RayEnds& ends, const RayOrigins& origins,
   collector.set_origin(0, origins.origins[0]);
   for (std::size_t k = 0; k < ends.size; ++k) {
     const std::uint32_t origin = origins.origin_of == nullptr ? 0 : origins.origin_of[k];
+    assert(origin < origins.size);
     if (origin != collector.origin_number()) collector.set_origin(origin, origins.origins[origin]);
     collector.add({ends.x[k], ends.y[k], ends.z[k]});
   }

@@ -35,8 +35,8 @@ InsertionResult insert_scan(const RayEnds& ends, const RayOrigins& origins,
   if (freed != nullptr) freed->clear();
   if (!is_supported(tree)) return insert_with_octomap(ends, origins, options, tree);
   CollectionWorkspace& collection = workspace.memory().collection;
-  const InsertionResult result = collect_cells<Ties::kAsOctomap>(
-      ends, origins, options, tree.getResolution(), collection);
+  const InsertionResult result =
+      collect_cells<Ties::kAsOctomap>(ends, origins, options, tree.getResolution(), collection);
   update_tree(collection.cells, tree, freed);
   return result;
 }

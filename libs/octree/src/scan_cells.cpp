@@ -14,11 +14,13 @@ std::size_t hash(CellCode tile_code) {
 
 }  // namespace
 
-ScanCells::ScanCells() : blocks_(1), table_(kFirstTableSize) {}
+ScanCells::ScanCells() : free_(1), occupied_(1), occupied_of_(1), table_(kFirstTableSize) {}
 
 void ScanCells::clear() {
   tiles_.clear();
-  blocks_.resize(1);
+  free_.resize(1);
+  occupied_.resize(1);
+  occupied_of_.resize(1);
   std::fill(table_.begin(), table_.end(), 0U);
 }
 
@@ -27,7 +29,12 @@ void ScanCells::mark_occupied(CellCode code) {
   std::uint32_t block = tile.block[code >> 9 & 511];
   if (block == 0) block = add_block(tile, code);
   tile.occupied[code >> 15 & 7] |= std::uint64_t{1} << (code >> 9 & 63);
-  blocks_[block].occupied[code >> 6 & 7] |= std::uint64_t{1} << (code & 63);
+  std::uint32_t& place = occupied_of_[block];
+  if (place == 0) {
+    place = static_cast<std::uint32_t>(occupied_.size());
+    occupied_.emplace_back();
+  }
+  occupied_[place].words[code >> 6 & 7] |= std::uint64_t{1} << (code & 63);
 }
 
 std::size_t ScanCells::tile_number(CellCode tile_code) {
@@ -45,8 +52,9 @@ std::size_t ScanCells::tile_number(CellCode tile_code) {
 }
 
 std::uint32_t ScanCells::add_block(CellTile& tile, CellCode code) {
-  const auto number = static_cast<std::uint32_t>(blocks_.size());
-  blocks_.emplace_back();
+  const auto number = static_cast<std::uint32_t>(free_.size());
+  free_.emplace_back();
+  occupied_of_.push_back(0);
   tile.block[code >> 9 & 511] = number;
   tile.present[code >> 15 & 7] |= std::uint64_t{1} << (code >> 9 & 63);
   return number;

@@ -11,15 +11,14 @@ namespace mrpt_terrain::octree {
 
 /// 8^3 cells, a bit each; word w has the w-th octant of 4^3 cells, bits in the order of codes.
 struct alignas(64) CellBlock {
-  std::uint64_t free[8] = {};
-  std::uint64_t occupied[8] = {};
+  std::uint64_t words[8] = {};
 };
 
 /// 64^3 cells as 8^3 blocks, of which only those exist that a ray met.
 struct CellTile {
-  CellCode code = 0;             ///< of its cells, without the lowest 18 bits
+  CellCode code = 0;               ///< of its cells, without the lowest 18 bits
   std::uint64_t present[8] = {};   ///< a bit per block, in the order of codes
-  std::uint64_t occupied[8] = {};  ///< blocks with a bit among `CellBlock::occupied`
+  std::uint64_t occupied[8] = {};  ///< blocks in which a ray ends
   std::uint32_t block[512] = {};   ///< number of the block; 0: there is none
 };
 
@@ -32,27 +31,33 @@ class ScanCells {
   /// Forgets all cells and keeps the memory.
   void clear();
 
-  /// Marks `count` cells as free; code k is at codes[k * stride]. Fast if neighbours in the list
-  /// are neighbours in space.
-  void mark_free(const CellCode* codes, std::size_t stride, std::size_t count) {
+  /// The tile in which a ray is, kept from one call to the next.
+  struct Cursor {
     CellCode tile_code = ~CellCode{0};
-    CellTile* tile = nullptr;
-    for (std::size_t k = 0; k < count; ++k) {
-      const CellCode code = codes[k * stride];
-      if (code >> 18 != tile_code) {
-        tile_code = code >> 18;
-        tile = &tiles_[tile_number(tile_code)];
-      }
-      std::uint32_t block = tile->block[code >> 9 & 511];
-      if (block == 0) block = add_block(*tile, code);
-      blocks_[block].free[code >> 6 & 7] |= std::uint64_t{1} << (code & 63);
+    std::size_t tile = 0;
+  };
+
+  /// Marks cells of one word as free: the bits of `word`, in the word of cell `code`.
+  void mark_free(CellCode code, std::uint64_t word, Cursor& cursor) {
+    if (code >> 18 != cursor.tile_code) {
+      cursor.tile_code = code >> 18;
+      cursor.tile = tile_number(cursor.tile_code);
     }
+    CellTile& tile = tiles_[cursor.tile];
+    std::uint32_t block = tile.block[code >> 9 & 511];
+    if (block == 0) block = add_block(tile, code);
+    free_[block].words[code >> 6 & 7] |= word;
   }
 
   void mark_occupied(CellCode code);
 
   [[nodiscard]] const std::vector<CellTile>& tiles() const { return tiles_; }
-  [[nodiscard]] const CellBlock& block(std::uint32_t number) const { return blocks_[number]; }
+  /// Cells that rays cross in a block, by the number that its tile has for it.
+  [[nodiscard]] const CellBlock& free(std::uint32_t block) const { return free_[block]; }
+  /// Cells that rays end in.
+  [[nodiscard]] const CellBlock& occupied(std::uint32_t block) const {
+    return occupied_[occupied_of_[block]];
+  }
 
  private:
   [[nodiscard]] std::size_t tile_number(CellCode tile_code);
@@ -60,8 +65,10 @@ class ScanCells {
   void double_table();
 
   std::vector<CellTile> tiles_;
-  std::vector<CellBlock> blocks_;     // the first stands for no block
-  std::vector<std::uint32_t> table_;  // hash table: 1 + number of the tile, 0: empty
+  std::vector<CellBlock> free_;             // of each block; the first stands for no block
+  std::vector<CellBlock> occupied_;         // of a few blocks; the first is empty
+  std::vector<std::uint32_t> occupied_of_;  // per block: its number among `occupied_`
+  std::vector<std::uint32_t> table_;        // hash table: 1 + number of the tile, 0: empty
 };
 
 }  // namespace mrpt_terrain::octree

@@ -5,6 +5,15 @@
 
 namespace mrpt_terrain::octree {
 
+void remove_leaves(octomap::OcTree& tree, OcTreeNode& node, float value) {
+  for (std::size_t k = 0; k < 8; ++k) delete child_of(node, k);
+  delete[] children_of(node);
+  children_of(node) = nullptr;
+  node.setLogOdds(value);
+  size_of(tree) -= 8;
+  extent_is_stale(tree) = true;
+}
+
 void prune_or_raise(octomap::OcTree& tree, OcTreeNode& node) {
   float greatest = -std::numeric_limits<float>::max();
   bool equal = true;
@@ -20,7 +29,7 @@ void prune_or_raise(octomap::OcTree& tree, OcTreeNode& node) {
     equal = equal && first != nullptr && value == first->getLogOdds() && !has_children(*child);
   }
   if (equal) {
-    tree.pruneNode(&node);
+    remove_leaves(tree, node, first->getLogOdds());
   } else {
     node.setLogOdds(greatest);
   }

@@ -44,9 +44,30 @@ struct TreeMembers : octomap::OcTree {
 [[nodiscard]] inline OcTreeNode*& root_of(octomap::OcTree& tree) {
   return tree.*(&TreeMembers::root);
 }
+/// Number of nodes. Whoever changes it sets `extent_is_stale`, too.
 [[nodiscard]] inline std::size_t& size_of(octomap::OcTree& tree) {
   return tree.*(&TreeMembers::tree_size);
 }
+
+[[nodiscard]] inline bool& extent_is_stale(octomap::OcTree& tree) {
+  return tree.*(&TreeMembers::size_changed);
+}
+
+/// Makes a child of a node that has an array of children, and none at this place.
+inline OcTreeNode* add_child(octomap::OcTree& tree, OcTreeNode& node, std::size_t index) {
+  auto* const child = new OcTreeNode();
+  children_of(node)[index] = child;
+  ++size_of(tree);
+  return child;
+}
+
+/// Gives a node an array without children, if it has none.
+inline void ensure_array(OcTreeNode& node) {
+  if (children_of(node) == nullptr) children_of(node) = new octomap::AbstractOcTreeNode*[8]();
+}
+
+/// Replaces eight children that have no children themselves by one value.
+void remove_leaves(octomap::OcTree& tree, OcTreeNode& node, float value);
 
 /// Makes children of a node equal if that is possible, or gives it the greatest value of its
 /// children: what OctoMap does with every node above an updated cell. The node has children.

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "tree_access.h"
 
@@ -48,23 +49,21 @@ struct WordMarks {
 
 struct BlockMarks {
   static constexpr int kLevel = 3;
-  const CellBlock* block;
-  [[nodiscard]] bool has_part(std::size_t k) const {
-    return (block->free[k] | block->occupied[k]) != 0;
-  }
+  const std::uint64_t* crossed;  // not disjoint from the others
+  const std::uint64_t* occupied;
+  [[nodiscard]] bool has_part(std::size_t k) const { return (crossed[k] | occupied[k]) != 0; }
   [[nodiscard]] WordMarks part(std::size_t k) const {
-    return {block->free[k] & ~block->occupied[k], block->occupied[k]};
+    return {crossed[k] & ~occupied[k], occupied[k]};
+  }
+  [[nodiscard]] bool any_free() const {
+    std::uint64_t any = 0;
+    for (std::size_t k = 0; k < 8; ++k) any |= part(k).free;
+    return any != 0;
   }
   [[nodiscard]] bool any_occupied() const {
     std::uint64_t any = 0;
-    for (const std::uint64_t word : block->occupied) any |= word;
+    for (std::size_t k = 0; k < 8; ++k) any |= occupied[k];
     return any != 0;
-  }
-  [[nodiscard]] bool any_free() const {
-    for (std::size_t k = 0; k < 8; ++k) {
-      if (part(k).any_free()) return true;
-    }
-    return false;
   }
   [[nodiscard]] bool all_free() const {
     std::uint64_t all = ~std::uint64_t{0};
@@ -73,7 +72,7 @@ struct BlockMarks {
   }
   [[nodiscard]] bool all_occupied() const {
     std::uint64_t all = ~std::uint64_t{0};
-    for (const std::uint64_t word : block->occupied) all &= word;
+    for (std::size_t k = 0; k < 8; ++k) all &= occupied[k];
     return ~all == 0;
   }
 };
@@ -96,7 +95,8 @@ struct EightBlocks : TileMarks {
   }
   [[nodiscard]] bool has_part(std::size_t k) const { return tile->block[first + k] != 0; }
   [[nodiscard]] BlockMarks part(std::size_t k) const {
-    return {&cells->block(tile->block[first + k])};
+    const std::uint32_t block = tile->block[first + k];
+    return {cells->free(block).words, cells->occupied(block).words};
   }
 };
 
@@ -164,6 +164,7 @@ class Passage {
       root = new OcTreeNode();
       ++size_of(tree_);
     }
+    extent_is_stale(tree_) = true;
     update_node(*root, is_new, AboveTile<kTreeDepth>{{{&cells, &tile}}}, tile.code);
   }
 
@@ -221,14 +222,46 @@ class Passage {
     }
   }
 
+  // The cells of a node one level above them: the innermost loop.
+  bool update_children(OcTreeNode& node, bool is_new, const PairMarks& marks, CellCode code) {
+    ensure_array(node);
+    bool touched = is_new;
+    bool equal = true;
+    float greatest = -std::numeric_limits<float>::max();
+    const OcTreeNode* first = nullptr;
+    for (std::size_t k = 0; k < 8; ++k) {
+      OcTreeNode* child = child_of(node, k);
+      const bool is_new_child = child == nullptr;
+      if (marks.has_part(k)) {
+        if (is_new_child) child = add_child(tree_, node, k);
+        touched |= update_leaf(*child, is_new_child, marks.part(k), code << 3 | k);
+      } else if (is_new_child) {
+        equal = false;
+        continue;
+      }
+      const float value = child->getLogOdds();
+      if (value > greatest) greatest = value;
+      if (first == nullptr) first = child;
+      equal = equal && value == first->getLogOdds();
+    }
+    if (!touched) return false;
+    if (equal) {
+      remove_leaves(tree_, node, first->getLogOdds());
+    } else {
+      node.setLogOdds(greatest);
+    }
+    return true;
+  }
+
   template <class Marks>
   bool update_children(OcTreeNode& node, bool is_new, const Marks& marks, CellCode code) {
+    ensure_array(node);
     bool touched = is_new;
     for (std::size_t k = 0; k < 8; ++k) {
       if (!marks.has_part(k)) continue;
       OcTreeNode* child = child_of(node, k);
       const bool is_new_child = child == nullptr;
-      if (is_new_child) child = tree_.createNodeChild(&node, static_cast<unsigned>(k));
+      if (is_new_child) child = add_child(tree_, node, k);
       const CellCode child_code = child_code_of<Marks::kLevel>(code, k);
       touched |= update_node(*child, is_new_child, marks.part(k), child_code);
     }

@@ -14,10 +14,19 @@ bool goes_first(double a, double b) {
   return kTies == Ties::kAsOctomap ? a < b : a <= b;
 }
 
+// Steps after which a lane leaves its word, from those at which it entered one, and their number.
+std::uint32_t last_in_word(std::uint32_t entered, std::uint64_t steps) {
+  if (steps == 0) return 0;
+  const auto last = std::uint32_t{1} << (steps - 1);
+  return (entered >> 1 & (last - 1)) | last;
+}
+
 template <Ties kTies>
 void walk_plain(Lanes& lanes, Trail& trail) {
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    trail.steps[lane] = 0;
+    std::uint32_t entered = 0;
+    std::uint64_t steps = 0;
+    std::uint64_t word = 0;
     double t[3] = {lanes.crossing[0][lane], lanes.crossing[1][lane], lanes.crossing[2][lane]};
     bool alive = (lanes.alive >> lane & 1) != 0;
     for (std::size_t k = 0; alive && k < kChunk; ++k) {
@@ -30,13 +39,19 @@ void walk_plain(Lanes& lanes, Trail& trail) {
       // Counts along one axis: carries run through the bits of the others, which are set.
       const CellCode bits = kAxisBits[axis];
       CellCode& cell = lanes.cell[lane];
+      const CellCode before = cell;
       cell = (((cell | ~bits) + lanes.step[axis][lane]) & bits) | (cell & ~bits);
       t[axis] += lanes.spacing[axis][lane];
       const double length = lanes.length[lane];
       alive = cell != lanes.last[lane] && !(t[0] > length && t[1] > length && t[2] > length);
+      const bool enters = (cell ^ before) > 63;
+      entered |= static_cast<std::uint32_t>(enters) << k;
+      word = (enters ? 0 : word) | std::uint64_t{1} << (cell & 63);
       trail.cell[k][lane] = cell;
-      trail.steps[lane] += alive ? 1 : 0;
+      trail.word[k][lane] = word;
+      steps += alive ? 1 : 0;
     }
+    trail.complete[lane] = last_in_word(entered, steps);
     for (std::size_t axis = 0; axis < 3; ++axis) lanes.crossing[axis][lane] = t[axis];
     if (!alive) lanes.alive = static_cast<std::uint8_t>(lanes.alive & ~(1U << lane));
   }
@@ -63,6 +78,10 @@ template <Ties kTies>
   const __m512i bits_y = _mm512_set1_epi64(static_cast<long long>(kAxisBits[1]));
   const __m512i bits_z = _mm512_set1_epi64(static_cast<long long>(kAxisBits[2]));
   const __m512i one = _mm512_set1_epi64(1);
+  const __m512i within_word = _mm512_set1_epi64(63);
+  const __m512i beyond_word = _mm512_set1_epi64(~63LL);
+  __m512i word = _mm512_setzero_si512();
+  alignas(32) __mmask8 entered[kChunk];
   const __m512i last = _mm512_load_si512(lanes.last);
   __m512i cell = _mm512_load_si512(lanes.cell);
   __m512i steps = _mm512_setzero_si512();
@@ -76,7 +95,11 @@ template <Ties kTies>
     const __m512i step = _mm512_mask_mov_epi64(_mm512_mask_mov_epi64(step_z, x, step_x), y, step_y);
     // Counts along one axis: carries run through the bits of the others, which are set.
     const __m512i sum = _mm512_add_epi64(_mm512_ternarylogic_epi64(cell, bits, bits, 0xf3), step);
+    const __m512i before = cell;
     cell = _mm512_ternarylogic_epi64(bits, sum, cell, 0xca);  // bits ? sum : cell
+    const __m512i bit = _mm512_maskz_sllv_epi64(0xff, one, _mm512_and_si512(cell, within_word));
+    entered[k] = _mm512_test_epi64_mask(_mm512_xor_si512(cell, before), beyond_word);
+    word = _mm512_mask_or_epi64(bit, _knot_mask8(entered[k]), word, bit);
     tx = _mm512_mask_add_pd(tx, x, tx, spacing_x);
     ty = _mm512_mask_add_pd(ty, y, ty, spacing_y);
     tz = _mm512_mask_add_pd(tz, z, tz, spacing_z);
@@ -85,13 +108,21 @@ template <Ties kTies>
     alive = _mm512_mask_cmpneq_epi64_mask(alive, cell, last);
     steps = _mm512_mask_add_epi64(steps, alive, steps, one);
     _mm512_store_si512(trail.cell[k], cell);
+    _mm512_store_si512(trail.word[k], word);
   }
   _mm512_store_pd(lanes.crossing[0], tx);
   _mm512_store_pd(lanes.crossing[1], ty);
   _mm512_store_pd(lanes.crossing[2], tz);
   _mm512_store_si512(lanes.cell, cell);
-  _mm512_store_si512(trail.steps, steps);
   lanes.alive = alive;
+  alignas(64) std::uint64_t counts[kLanes];
+  _mm512_store_si512(counts, steps);
+  const __m256i rows = _mm256_load_si256(reinterpret_cast<const __m256i*>(entered));
+  for (int lane = 0; lane < static_cast<int>(kLanes); ++lane) {
+    // Bit k: lane's bit of row k.
+    const int column = _mm256_movemask_epi8(_mm256_slli_epi16(rows, 7 - lane));
+    trail.complete[lane] = last_in_word(static_cast<std::uint32_t>(column), counts[lane]);
+  }
 }
 
 #endif

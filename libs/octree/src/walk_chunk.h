@@ -27,10 +27,12 @@ struct Lanes {
   std::uint8_t alive;  ///< a bit per lane: it has not arrived yet
 };
 
-/// Where the lanes went in one chunk.
+/// Where the lanes went in one chunk. Cells of a lane that follow each other in one word of 4^3
+/// cells are collected, which leaves a quarter of them to be looked up.
 struct Trail {
   alignas(64) CellCode cell[kChunk][kLanes];
-  alignas(64) std::uint64_t steps[kLanes];  ///< cells before the lane arrived
+  alignas(64) std::uint64_t word[kChunk][kLanes];  ///< bits of the word's cells so far
+  std::uint32_t complete[kLanes];  ///< per lane, a bit per step: the last one in its word
 };
 
 using ChunkWalker = void (*)(Lanes&, Trail&);

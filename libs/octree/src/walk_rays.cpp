@@ -33,11 +33,17 @@ void load_lanes(const RayBatch& batch, const std::array<std::uint16_t, kLanes>& 
 }
 
 void walk_lanes(ChunkWalker walk_chunk, Lanes& lanes, ScanCells& cells) {
+  std::array<ScanCells::Cursor, kLanes> cursors;
   Trail trail;
   while (lanes.alive != 0) {
     walk_chunk(lanes, trail);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      cells.mark_free(&trail.cell[0][lane], kLanes, trail.steps[lane]);
+      ScanCells::Cursor cursor = cursors[lane];
+      for (std::uint32_t left = trail.complete[lane]; left != 0; left &= left - 1) {
+        const auto k = static_cast<std::size_t>(__builtin_ctz(left));
+        cells.mark_free(trail.cell[k][lane], trail.word[k][lane], cursor);
+      }
+      cursors[lane] = cursor;
     }
   }
 }
@@ -54,7 +60,10 @@ void sort_by_cells(const RayBatch& rays, std::array<std::uint16_t, RayBatch::kCa
 void walk_rays_by(ChunkWalker walk_chunk, RayBatch& rays, ScanCells& cells) {
   std::array<std::uint16_t, RayBatch::kCapacity> order;
   sort_by_cells(rays, order);
-  cells.mark_free(rays.first.data(), 1, rays.size);
+  ScanCells::Cursor cursor;
+  for (std::size_t k = 0; k < rays.size; ++k) {
+    cells.mark_free(rays.first[k], std::uint64_t{1} << (rays.first[k] & 63), cursor);
+  }
   for (std::size_t begin = 0; begin < rays.size; begin += kLanes) {
     const std::size_t count = std::min(kLanes, rays.size - begin);
     std::array<std::uint16_t, kLanes> group{};

@@ -12,6 +12,9 @@
 #ifdef HAVE_io
 #include "mrpt_terrain/io/trajectory.h"
 #endif
+#ifdef HAVE_octree
+#include "mrpt_terrain/octree/insert_scan.h"
+#endif
 
 namespace {
 
@@ -43,6 +46,14 @@ int main() {
   mrpt_terrain::io::Trajectory trajectory;
   trajectory.add(1.0, mrpt::poses::CPose3D());
   if (!trajectory.at(1.0)) return EXIT_FAILURE;
+#endif
+#ifdef HAVE_octree
+  octomap::OcTree tree(0.1);
+  mrpt_terrain::octree::InsertionWorkspace memory;
+  const float x = 1.05F, y = 0.05F, z = 0.05F;
+  const std::array<float, 3> origin = {0.05F, 0.05F, 0.05F};
+  mrpt_terrain::octree::insert_scan({&x, &y, &z, 1}, {&origin, 1}, {}, memory, tree);
+  if (tree.getNumLeafNodes() != 11) return EXIT_FAILURE;
 #endif
   mrpt_terrain::DescriptionWorkspace workspace;
   mrpt_terrain::Description description;

@@ -21,7 +21,9 @@ struct FreeSpaceCounts {
 /// A bin is looked at if its layer is free in `free` and it was not hit since `free.time`. From the
 /// bottom of the cell up, with the *ground* the lowest bin that stays:
 /// 1. Without ground below, it goes only if the free span begins `guard_height` or more below its
-///    lowest point: rays went underneath. Rays that graze a surface pass above it, never below.
+///    lowest point (rays that graze a surface pass above it, never below), or if two thirds of the
+///    known cells within `ground_reach` (at least four) have something `guard_height` or more below
+///    it.
 /// 2. If it reaches higher than `guard_height` above the lowest point of the ground, it goes, if
 ///    the free span begins in a layer below it, or within `guard_height` above the ground. (A ray
 ///    that grazes the roof of a car frees the layer of the roof, but none inside the car.)

@@ -27,7 +27,7 @@ struct RobotParams {
   double ground_clearance = 0.08;         ///< under the body, metres
   double wheel_radius = 0.1;              ///< metres
   double max_climb = 0.3490658503988659;  ///< 20 deg, radians
-  double max_tilt = 0.2617993877991494;   ///< 15 deg, radians
+  double max_tilt = 0.26179938779914946;  ///< 15 deg, radians
   double max_step = 0.08;                 ///< metres
   double max_roughness = 0.05;            ///< metres
 
@@ -37,7 +37,7 @@ struct RobotParams {
           ParamInfo{"footprint_length", "", "m", 0.05, 20.0, "extent along the robot's x"});
     visit(self.footprint_width,
           ParamInfo{"footprint_width", "", "m", 0.05, 20.0,
-                    "extent along the robot's y; slopes are told from windows half as wide"});
+                    "extent along the robot's y; slopes are told from windows as wide"});
     visit(self.height,
           ParamInfo{"height", "", "m", 0.01, 20.0, "from the ground to the highest part"});
     visit(self.ground_clearance,
@@ -94,24 +94,25 @@ struct CostWorkspace {
   std::vector<Slot> surface;       ///< per slot: the window whose plane it takes, or kUnobserved
 };
 
-/// Cells to each side of a window: a quarter of the robot's width, from 1 to kMaxReach cells.
-/// A window is about half as wide as the robot, so that no slope is averaged away that only one
-/// wheel feels, and noise of 2 cm leaves a plane over 5 cm cells level within a few degrees.
+/// Cells to each side of a window: half the robot's width, from 1 to kMaxReach cells. A window is
+/// about as wide as the robot, so that its plane is the one the robot stands on.
 [[nodiscard]] int window_reach(const RobotParams& robot, double cell_size);
 
 /// Measures slope, step and roughness of every observed cell.
 ///
-/// * Surface of a cell: the smoothest of the planes of nine windows that contain it, its own and
-///   those about the cells `window_reach` away in eight directions, as far as they have at least as
-///   many observed cells as its own; beside a curb, that is a window that ends at the curb.
-///   Gradient and roughness are those of this plane; without one, `status` says why.
-/// * Step of a cell: in each of four directions, the heights of the surfaces of the cells before
-///   and behind it, carried on to it, and its own mean height differ; the greatest difference
-///   counts. 0 on any plane, h at a curb, pit or post of height h, whether it is as narrow as a
-///   cell or not. Where a neighbour has no surface, that of the cell stands in; where that is
-///   missing too, mean heights count as far as they differ by more than `max_climb` explains.
+/// * Surface of a cell: of the planes of nine windows that contain it, its own and those about the
+///   cells `window_reach` away in eight directions, the one with the least variance per observed
+///   cell. Windows with fewer observed cells than its own do not count. Beside a curb, this is a
+///   window that ends at the curb.
+/// * Step of a cell: in each of four directions, the surfaces of the cells before and behind, both
+///   carried on to the cell, and its own mean height (less twice its standard error) differ; the
+///   greatest difference counts. It is 0 on any plane, and h at a curb, pit or post of height h.
+///   Where a neighbour has no surface, that of the cell stands in; where that is missing too, mean
+///   heights count as far as they differ by more than `max_climb` explains.
 /// * Or, if that is greater, h_max - h_min of the cell beyond what its gradient (up to `max_climb`)
 ///   and noise (six times the least roughness around) explain: thin things of few points.
+/// * Gradient and roughness are those of the surface; where the surfaces before and behind the cell
+///   are apart by more than four times their roughness, of the smoothest of the three.
 ///
 /// The robot's width, `max_climb` and the cell size are all that the result depends on besides the
 /// points. The same input gives the same bytes; results that keep their memory do not allocate.

@@ -43,12 +43,13 @@ struct FusionParams {
   double min_height = -8.0;  ///< points below are left out, metres
   int renew_scans = 10;      ///< scans after which a layer's newer bin replaces the older; 0: never
   double max_age = 0.0;      ///< bins not seen for so long are forgotten, seconds; 0: never
-  double guard_height = 0.3;  ///< metres: see `apply_free_space`
-  int guard_scans = 5;        ///< see `apply_free_space`; 0: never
-  double clearance = 2.0;     ///< least free height below what hangs over the ground, metres
-  double least_share = 0.05;  ///< of the points of the fullest bin: fewer are no ground
-  double spread_limit = 3.0;  ///< standard deviations beyond which extremes are cut in the window
-  double points_cover = 0.5;  ///< share of a cluster's cells that the current scan must hit
+  double guard_height = 0.25;  ///< metres: see `apply_free_space`
+  double ground_reach = 0.8;   ///< metres: see `apply_free_space`
+  int guard_scans = 5;         ///< see `apply_free_space`; 0: never
+  double clearance = 2.0;      ///< least free height below what hangs over the ground, metres
+  double least_share = 0.05;   ///< of the points of the fullest bin: fewer are no ground
+  double spread_limit = 3.0;   ///< standard deviations beyond which extremes are cut in the window
+  double points_cover = 0.5;   ///< share of a cluster's cells that the current scan must hit
 
   template <class Self, class Visitor>
   static void visit_params(Self& self, Visitor&& visit) {
@@ -82,6 +83,9 @@ struct FusionParams {
         self.guard_height,
         ParamInfo{"guard_height", "", "m", 0.0, 10.0,
                   "heights so close to the ground of their cell are guarded against grazing rays"});
+    visit(self.ground_reach, ParamInfo{"ground_reach", "", "m", 0.0, 10.0,
+                                       "how far around a cell without ground of its own the ground "
+                                       "is looked for"});
     visit(self.guard_scans, ParamInfo{"guard_scans", "", "", 0, 255,
                                       "scans that have to see the cell and free the layer until a "
                                       "guarded height above the ground is forgotten; 0: never"});

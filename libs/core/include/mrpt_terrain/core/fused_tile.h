@@ -86,6 +86,7 @@ struct Tile : SharedNode {
   std::vector<std::unique_ptr<BinBlock>> blocks;
   BinIndex first_unused = kNoBin;  ///< list of places in the blocks that no cell uses
   std::uint32_t bins = 0;          ///< bins in use
+  std::uint32_t disorder = 0;  ///< bins that were added since they lay in the order of the cells
 
   [[nodiscard]] const HeightBin& bin(BinIndex k) const {
     return (*blocks[k / kBinsPerBlock])[k % kBinsPerBlock];

@@ -35,7 +35,7 @@ struct LocalPlane {
 
 /// Fits a plane to the points of the window of (2 reach + 1)^2 cells about every observed cell;
 /// windows end at the edges of the grid. A plane needs 2 reach + 1 observed cells (more than one
-/// row), and points whose spread across their longest direction is at least a tenth (in variance)
+/// row), and points whose spread across their longest direction is at least a quarter (in variance)
 /// of that of a full window.
 ///
 /// The cost is proportional to the observed cells times (2 reach + 1). The same grid gives the same

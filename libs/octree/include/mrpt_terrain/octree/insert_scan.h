@@ -14,8 +14,8 @@
 /// `insertPointCloud(cloud, origin, max_range, lazy_eval = false, discretize)` leaves.
 ///
 /// A scan frees the cells that its rays cross and occupies the cells that they end in; where both
-/// happen, the cell is occupied. Each cell gets one update per scan. With several origins, the cells
-/// of all rays are united before, so that this still holds for the scan as a whole.
+/// happen, the cell is occupied. Each cell gets one update per scan. With several origins, the
+/// cells of all rays are united before, so that this still holds for the scan as a whole.
 namespace mrpt_terrain::octree {
 
 /// Where the rays of a scan end: three parallel arrays of coordinates, metres, frame of the tree.

@@ -24,9 +24,9 @@ struct TrimResult {
 };
 
 /// Removes all cells outside the window and keeps the values inside: the tree is then the one that
-/// OctoMap would hold if only the cells inside had ever been updated. Subtrees inside are not looked
-/// at, so the cost follows what is removed and what lies across the border, not the size of the tree.
-/// Requires a tree whose inner nodes are up to date.
+/// OctoMap would hold if only the cells inside had ever been updated. Subtrees inside are not
+/// looked at, so the cost follows what is removed and what lies across the border, not the size of
+/// the tree. Requires a tree whose inner nodes are up to date.
 TrimResult trim_tree(const CellWindow& window, octomap::OcTree& tree);
 
 }  // namespace mrpt_terrain::octree

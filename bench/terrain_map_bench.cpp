@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The whole insertion of a scan into a CTerrainMap: description, OctoMap, snapshot.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+#include "mrpt_terrain/map/terrain_map.h"
+#include "scan_files.h"
+
+namespace {
+
+using namespace mrpt_terrain;
+
+/// A 64-beam scan of a vehicle that drives on between insertions.
+void insertion(benchmark::State& state, Fusion fusion, bool octree) {
+  MapParams params;
+  params.creation.fusion = fusion;
+  params.creation.octree = octree;
+  params.description.grid.length = params.description.grid.width = 60.0;
+  params.description.grid.cell_size = 0.2;
+  params.description.grid.max_height = 3.0;
+  CTerrainMap map(params);
+  io::Scan scan;
+  scan.points = bench::benchmark_scan().points;
+  scan.ray_origins.push_back({0.0F, 0.0F, 1.73F});
+  double driven = 0.0;
+  const auto insert = [&] {
+    scan.stamp += 0.1;
+    driven += 1.0;
+    map.insert_scan(scan, mrpt::poses::CPose3D(driven, 0, 0, 0, 0, 0));
+  };
+  for (int k = 0; k < 10; ++k) insert();
+  if (map.snapshot()->clusters.empty()) state.SkipWithError("nothing was described");
+  for (auto _ : state) insert();
+  state.counters["cells"] = static_cast<double>(map.snapshot()->description.grid.observed());
+}
+
+BENCHMARK_CAPTURE(insertion, scan, Fusion::kScan, true)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(insertion, scan_without_octree, Fusion::kScan, false)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(insertion, rolling, Fusion::kRolling, true)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(insertion, rolling_without_octree, Fusion::kRolling, false)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One thread inserts while others read, draw, serialise and localise. Means most under the thread
+// sanitizer (preset tsan).
+#include <gtest/gtest.h>
+#include <mrpt/io/CMemoryStream.h>
+#include <mrpt/opengl/CSetOfObjects.h>
+#include <mrpt/serialization/CArchive.h>
+#include <octomap/OcTree.h>
+
+#include <atomic>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "mrpt_terrain/map/terrain_map.h"
+#include "terrain_maps.h"
+
+namespace mrpt_terrain {
+namespace {
+
+using mrpt::poses::CPose3D;
+using testing::lidar_pose;
+using testing::observation_of;
+using testing::scene_points;
+using testing::small_map;
+
+class TerrainMapThreads : public ::testing::TestWithParam<Fusion> {};
+
+TEST_P(TerrainMapThreads, ReadersNeverSeeHalfAScan) {
+  MapParams params = small_map();
+  params.creation.fusion = GetParam();
+  params.fusion.length = params.fusion.width = 20.0;
+  CTerrainMap map(params);
+  const auto observation = observation_of(scene_points(), lidar_pose());
+  std::atomic<bool> done{false};
+  std::atomic<int> reads{0};
+  const auto reader = [&](auto&& read) {
+    return std::thread([&done, &reads, read] {
+      do {
+        read();
+        ++reads;
+      } while (!done);
+    });
+  };
+  std::vector<std::thread> readers;
+  readers.push_back(reader([&map] {
+    const TerrainSnapshotPtr now = map.snapshot();
+    EXPECT_EQ(now->clusters.size(), now->description.things.size());
+    EXPECT_EQ(now->costs.size(), now->description.grid.observed());
+    EXPECT_EQ(now->description.labels.support.size(), now->points.size());
+    (void)now->cell_at(2.05, 0.75);
+    (void)map.cost_at(2.05, 0.75, 0.3);
+  }));
+  readers.push_back(reader([&map] {
+    mrpt::io::CMemoryStream stream;
+    mrpt::serialization::archiveFrom(stream) << map;
+    stream.Seek(0);
+    CTerrainMap copy;
+    mrpt::serialization::archiveFrom(stream) >> copy;
+    EXPECT_EQ(copy.isEmpty(), copy.octree()->size() == 0);
+  }));
+  readers.push_back(reader([&map, &observation] {
+    mrpt::opengl::CSetOfObjects objects;
+    map.getVisualizationInto(objects);
+    EXPECT_LE(map.computeObservationLikelihood(observation, CPose3D()), 0.0);
+  }));
+  for (int k = 0; k < 12; ++k) {
+    ASSERT_TRUE(map.insertObservation(observation, CPose3D(0.2 * k, 0, 0, 0, 0, 0)));
+  }
+  done = true;
+  for (std::thread& thread : readers) thread.join();
+  EXPECT_GE(reads.load(), 3);
+  EXPECT_EQ(map.snapshot()->revision, 12U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Fusions, TerrainMapThreads,
+                         ::testing::Values(Fusion::kScan, Fusion::kRolling),
+                         [](const auto& fusion) { return std::string(name_of(fusion.param)); });
+
+}  // namespace
+}  // namespace mrpt_terrain

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "walk_rays.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "octree_scans.h"
+#include "walk_chunk.h"
+
+namespace mrpt_terrain::octree {
+namespace {
+
+std::set<CellCode> free_cells(const ScanCells& cells) {
+  std::set<CellCode> codes;
+  for (const CellTile& tile : cells.tiles()) {
+    for (CellCode block = 0; block < 512; ++block) {
+      if (tile.block[block] == 0) continue;
+      const CellBlock& bits = cells.free(tile.block[block]);
+      for (CellCode cell = 0; cell < 512; ++cell) {
+        if ((bits.words[cell >> 6] >> (cell & 63) & 1) != 0) {
+          codes.insert(tile.code << 18 | block << 9 | cell);
+        }
+      }
+    }
+  }
+  return codes;
+}
+
+void add_ray(const CellGrid& grid, const Place& origin, const Place& end, RayBatch& batch) {
+  CellKey from{}, to{};
+  ASSERT_TRUE(grid.find_key(origin, from) && grid.find_key(end, to));
+  if (from != to) batch.add(grid, origin, from, end, to);
+}
+
+TEST(WalkRays, OracleTheCellsAreThoseOfComputeRayKeys) {
+  RandomGenerator random(1);
+  const CellGrid grid(0.25);
+  const octomap::OcTree tree(0.25);
+  octomap::KeyRay keys;
+  RayBatch batch;
+  ScanCells cells;
+  for (int round = 0; round < 3000; ++round) {
+    const bool snap = round % 2 == 0;
+    const int reach = round % 3 == 0 ? 400 : 10;
+    Place origin{}, end{};
+    for (float& value : origin) value = test::random_coordinate(random, 0.25, 5, snap);
+    for (float& value : end) value = test::random_coordinate(random, 0.25, reach, snap);
+    cells.clear();
+    add_ray(grid, origin, end, batch);
+    walk_rays<Ties::kAsOctomap>(batch, cells);
+    EXPECT_EQ(batch.size, 0U);
+    ASSERT_TRUE(
+        tree.computeRayKeys({origin[0], origin[1], origin[2]}, {end[0], end[1], end[2]}, keys));
+    std::set<CellCode> expected;
+    for (const octomap::OcTreeKey& key : keys) expected.insert(code_of({key[0], key[1], key[2]}));
+    ASSERT_EQ(free_cells(cells), expected) << round;
+  }
+}
+
+TEST(WalkRays, LiteralTiesGoAlongZThenYThenX) {
+  const CellGrid grid(1.0);
+  RayBatch batch;
+  ScanCells cells;
+  constexpr std::uint16_t kMiddle = 32768;
+  add_ray(grid, {0.5F, 0.5F, 0.5F}, {1.5F, 1.5F, 1.5F}, batch);
+  walk_rays<Ties::kAsOctomap>(batch, cells);
+  EXPECT_EQ(free_cells(cells), (std::set<CellCode>{code_of({kMiddle, kMiddle, kMiddle}),
+                                                   code_of({kMiddle, kMiddle, kMiddle + 1}),
+                                                   code_of({kMiddle, kMiddle + 1, kMiddle + 1})}));
+  cells.clear();
+  add_ray(grid, {0.5F, 0.5F, 0.5F}, {1.5F, 1.5F, 1.5F}, batch);
+  walk_rays<Ties::kFlipped>(batch, cells);
+  EXPECT_EQ(free_cells(cells), (std::set<CellCode>{code_of({kMiddle, kMiddle, kMiddle}),
+                                                   code_of({kMiddle + 1, kMiddle, kMiddle}),
+                                                   code_of({kMiddle + 1, kMiddle + 1, kMiddle})}));
+}
+
+TEST(WalkRays, RaysTooShortForTheirLengthEndInTheirFirstCell) {
+  const CellGrid grid(0.1);
+  RayBatch batch;
+  ScanCells cells;
+  add_ray(grid, {1e-30F, 1e-30F, 0.05F}, {-1e-30F, -1e-30F, 0.05F}, batch);
+  ASSERT_EQ(batch.size, 1U);
+  walk_rays<Ties::kAsOctomap>(batch, cells);
+  EXPECT_EQ(free_cells(cells), (std::set<CellCode>{code_of({32768, 32768, 32768})}));
+}
+
+/// Lanes with random rays, some of which have arrived.
+Lanes random_lanes(RandomGenerator& random) {
+  const CellGrid grid(0.1);
+  Lanes lanes{};
+  RayBatch batch;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    Place origin{}, end{};
+    for (float& value : origin) value = test::random_coordinate(random, 0.1, 5, lane % 2 == 0);
+    for (float& value : end) value = test::random_coordinate(random, 0.1, 40, lane % 2 == 0);
+    end[2] += 5.0F;
+    add_ray(grid, origin, end, batch);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lanes.crossing[axis][lane] = batch.crossing[axis][lane];
+      lanes.spacing[axis][lane] = batch.spacing[axis][lane];
+      lanes.step[axis][lane] = batch.step[axis][lane];
+    }
+    lanes.length[lane] = batch.length[lane];
+    lanes.cell[lane] = batch.first[lane];
+    lanes.last[lane] = batch.last[lane];
+  }
+  lanes.alive = static_cast<std::uint8_t>(random.below(256));
+  return lanes;
+}
+
+TEST(WalkChunk, OracleAllVersionsGiveTheSameBits) {
+  const auto& walkers = chunk_walkers<Ties::kAsOctomap>();
+  if (walkers.front() == walkers.back()) GTEST_SKIP() << "this processor has one version only";
+  RandomGenerator random(2);
+  for (int round = 0; round < 200; ++round) {
+    Lanes fast = random_lanes(random);
+    Lanes plain = fast;
+    Trail fast_trail, plain_trail;
+    while (plain.alive != 0) {
+      walkers.front()(fast, fast_trail);
+      walkers.back()(plain, plain_trail);
+      ASSERT_EQ(fast.alive, plain.alive);
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        ASSERT_EQ(fast_trail.complete[lane], plain_trail.complete[lane]);
+        for (std::uint32_t left = plain_trail.complete[lane]; left != 0; left &= left - 1) {
+          const auto k = static_cast<std::size_t>(__builtin_ctz(left));
+          ASSERT_EQ(fast_trail.cell[k][lane], plain_trail.cell[k][lane]);
+          ASSERT_EQ(fast_trail.word[k][lane], plain_trail.word[k][lane]);
+        }
+        if ((plain.alive >> lane & 1) == 0) continue;
+        ASSERT_EQ(fast.cell[lane], plain.cell[lane]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          ASSERT_EQ(fast.crossing[axis][lane], plain.crossing[axis][lane]);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mrpt_terrain::octree
