@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes what the tests of MRPT's own programs read, out of a rawlog of single observations:
-// FOLDER/pairs.rawlog, its scans as pairs of actions and sensory frames, and FOLDER/with_map.rawlog,
-// a terrain map in front of the observations.
+// FOLDER/pairs.rawlog, its scans as pairs of actions and sensory frames, and
+// FOLDER/with_map.rawlog, a terrain map in front of the observations.
 #include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>

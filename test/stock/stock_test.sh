@@ -24,7 +24,11 @@ TEXT
 run() {
   local log="$1"
   shift
-  "$@" </dev/null >"$log" 2>&1 || { tail -n 40 "$log"; fail "exit code $? of: $*"; }
+  local code=0
+  "$@" </dev/null >"$log" 2>&1 || code=$?
+  [[ "$code" == 0 ]] && return
+  tail -n 40 "$log"
+  fail "exit code $code of: $*"
 }
 
 # contains FILE TEXT
@@ -78,6 +82,7 @@ test_rawlog-edit() {
 }
 
 is_mapped() { grep -q "$library" "/proc/$program/maps"; }
+records() { compgen -G 'grabbed_*.rawlog'; }
 
 # It records nothing, as there is no sensor, but must load the plug-in and end well at a key.
 test_rawlog-grabber() {
@@ -87,11 +92,10 @@ test_rawlog-grabber() {
   program=$!
   exec 8>keys
   wait_until 60 is_mapped
-  wait_until 60 contains grabber.log 'Press any key'
+  wait_until 60 records
   echo >&8
-  wait "$program" || { cat grabber.log; fail "exit code $?"; }
-  lacks grabber.log rror
-  compgen -G 'grabbed_*.rawlog' >/dev/null || fail "no rawlog was written"
+  end_of_program
+  lacks grabber.log 'thread signal'
 }
 
 test_observations2map() {
@@ -140,7 +144,7 @@ test_SceneViewer3D() {
   # Toolbar and background have some; a drawn map has many more.
   wait_until 60 shows_more_colours_than 300 SceneViewer3D
   close_window SceneViewer3D
-  end_of_program || fail "exit code $?"
+  end_of_program
   lacks viewer.log xception
 }
 
@@ -149,9 +153,10 @@ test_octovis() {
   need octovis
   make_map
   start_display "$PWD"
-  start_program octovis.log octovis "$map.bt"
+  start_program octovis.log octovis "$map.bt" 16
   wait_for_window 'CTerrainMap_01.bt'
-  contains octovis.log 'octree type OcTree'
+  # It shows the number of voxels when it has read them all; Mesa's own drawing leaves it black.
+  wait_until 60 grep -q 'octree type OcTree' octovis.log
   close_window 'CTerrainMap_01.bt'
 }
 
@@ -171,7 +176,7 @@ test_RawLogViewer() {
   press_in_map_dialog 1
   wait_until 60 has_no_window "$map_dialog"
   close_window "$viewer_window"
-  end_of_program || fail "exit code $?"
+  end_of_program
 }
 
 main() {

@@ -68,13 +68,14 @@ start_program() {
 
 has_window() { wmctrl -l | cut -d' ' -f5- | grep -q -- "$1"; }
 has_no_window() { ! has_window "$1"; }
-has_ended() { ! kill -0 "$program"; }
+# A zombie has ended: nobody has asked for its exit code yet.
+has_ended() { ! grep -q '^State:[[:space:]]*[^Z[:space:]]' "/proc/$program/status"; }
 
 # wait_for_window TITLE: fails at once if the program ends.
 wait_for_window() {
   local end=$((SECONDS + 90))
   until has_window "$1"; do
-    kill -0 "$program" 2>/dev/null || fail "the program has ended, and no window \"$1\" came"
+    ! has_ended 2>/dev/null || fail "the program has ended, and no window \"$1\" came"
     ((SECONDS < end)) || fail "no window \"$1\" came; there are: $(wmctrl -l)"
     sleep 0.2
   done
@@ -91,10 +92,12 @@ close_window() {
   wait_until 60 has_no_window "$1"
 }
 
-# end_of_program: waits for the end of `program` and gives its exit code.
+# end_of_program: waits for the end of `program`, which has to be a good one.
 end_of_program() {
+  local code=0
   wait_until 60 has_ended
-  wait "$program"
+  wait "$program" || code=$?
+  [[ "$code" == 0 ]] || fail "the program ended with exit code $code"
 }
 
 # colours_of TITLE: how many there are in a window.
@@ -109,15 +112,24 @@ viewer_window='RawlogViewer - Part'
 map_dialog='Creation of "raw map'
 preview_window='Raw-map 3D preview'
 
-# open_map_dialog: from the menu "Tools".
+# open_map_dialog: from the menu "Tools". Keys are lost while the rawlog is being shown, so they are
+# pressed until the dialog comes.
 open_map_dialog() {
+  local tries k
   wait_for_window "$viewer_window"
-  wait_until 60 has_no_window 'Constructing the tree'
-  activate "$viewer_window"
-  xdotool key alt+t
-  sleep 0.5
-  xdotool key m
-  wait_for_window "$map_dialog"
+  for ((tries = 0; tries < 20; ++tries)); do
+    wait_until 60 has_no_window 'Constructing the tree'
+    activate "$viewer_window"
+    xdotool key alt+t
+    sleep 0.5
+    xdotool key m
+    for ((k = 0; k < 20; ++k)); do
+      ! has_window "$map_dialog" || return 0
+      sleep 0.2
+    done
+    xdotool key Escape
+  done
+  fail "RawLogViewer does not open its raw-map dialog"
 }
 
 # into_map_text: puts the cursor into the text that describes the map, to the right.
