@@ -163,7 +163,7 @@ test_octovis() {
 test_RawLogViewer() {
   need RawLogViewer
   check_inis rawlogviewer
-  local prefix="$PWD/viewer_mrpt_terrain__CTerrainMap_00"
+  local prefix="$PWD/viewer_mrpt_terrain__CTerrainMap_01"
   start_display "$PWD"
   start_program viewer.log RawLogViewer -l "$library" "$rawlog"
   open_map_dialog
