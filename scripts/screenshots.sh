@@ -20,7 +20,7 @@ TEXT
 
 # picture NAME TITLE [CROP]: of a window, with few colours so that the file stays small.
 picture() {
-  import -window "$(window_number "$2")" ${3:+-crop "$3"} +repage -colors 128 \
+  import -window "$(window_number "$2")" ${3:+-crop "$3"} +repage -colors 64 \
     "PNG8:$images/mrpt_$1.png"
   say "mrpt_$1.png: $(stat --format=%s "$images/mrpt_$1.png") bytes"
 }
@@ -32,21 +32,27 @@ place() {
   sleep 2
 }
 
-# show_scene NAME FILE: in SceneViewer3D, from nearer than it comes up.
+# farther TITLE TURNS: turns the mouse wheel over a window.
+farther() {
+  xdotool mousemove --window "$(window_number "$1")" 500 300 \
+    click --repeat "$2" --delay 300 5
+  sleep 2
+}
+
+# show_scene NAME FILE: in SceneViewer3D.
 show_scene() {
   start_program "$work/$1.log" SceneViewer3D "$2"
   wait_for_window SceneViewer3D
   place SceneViewer3D 900 640
-  xdotool mousemove --window "$(window_number SceneViewer3D)" 500 300 click --repeat 3 --delay 300 5
+  farther SceneViewer3D 8
   wait_until 60 shows_more_colours_than 300 SceneViewer3D
-  sleep 2
   picture "$1" SceneViewer3D
   close_window SceneViewer3D
   end_of_program
 }
 
 picture_slam() {
-  LD_PRELOAD="$library" icp-slam "$inis/icp-slam.ini" "$work/drive.rawlog" </dev/null >slam.log 2>&1
+  LD_PRELOAD="$library" icp-slam "$inis/icp-slam.ini" "$work/sparse.rawlog" </dev/null >slam.log 2>&1
   show_scene icp-slam "log_icp_slam/_finalmaps_.txt_mrpt_terrain__CTerrainMap_01.3Dscene"
 }
 
@@ -61,18 +67,15 @@ picture_viewer() {
   start_program viewer.log RawLogViewer -l "$library" "$work/drive.rawlog"
   open_map_dialog
   generate_map "$inis/rawlogviewer.ini"
-  preview_map
   place "$map_dialog" 1000 760
   picture rawlogviewer_dialog "$map_dialog"
-  place "$preview_window" 900 640
+  preview_map
+  place "$preview_window" 800 560
   activate "$preview_window"
+  farther "$preview_window" 4
   wait_until 60 shows_more_colours_than 20 "$preview_window"
   picture rawlogviewer_preview "$preview_window"
-  close_window "$preview_window"
-  press_in_map_dialog 1
-  wait_until 60 has_no_window "$map_dialog"
-  close_window "$viewer_window"
-  end_of_program
+  close_viewer
 }
 
 main() {
@@ -89,8 +92,10 @@ main() {
   library="$folder/lib/libmrpt_terrain_map.so"
   work="$(mktemp -d)"
   cd "$work"
-  "$folder/bin/terrain-sim" "$project_folder/params/scenes/drive.yaml" --packets --no-truth \
-    --every 0.5 -o drive.rawlog
+  local drive=("$project_folder/params/scenes/drive.yaml" --packets --no-truth)
+  "$folder/bin/terrain-sim" "${drive[@]}" --every 0.5 -o drive.rawlog
+  # The matching of icp-slam wants few rings on the ground and long steps.
+  "$folder/bin/terrain-sim" "${drive[@]}" --sensor vlp16 --every 2.5 -o sparse.rawlog
   start_display "$work"
   picture_slam
   picture_observations2map

@@ -172,11 +172,7 @@ test_RawLogViewer() {
   wait_until 60 shows_more_colours_than 20 "$preview_window"
   save_map "$PWD/viewer" "${prefix}_cost.png"
   check_map "$prefix"
-  close_window "$preview_window"
-  press_in_map_dialog 1
-  wait_until 60 has_no_window "$map_dialog"
-  close_window "$viewer_window"
-  end_of_program
+  close_viewer
 }
 
 main() {

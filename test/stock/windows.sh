@@ -84,7 +84,7 @@ wait_for_window() {
 # window_number TITLE: of the newest window whose title contains it.
 window_number() { wmctrl -l | grep -- "$1" | tail -n 1 | cut -d' ' -f1; }
 
-activate() { xdotool windowactivate --sync "$(window_number "$1")"; }
+activate() { wmctrl -i -a "$(window_number "$1")"; sleep 0.3; }
 
 # close_window TITLE: as its user would; killing it would hide a crash at the end.
 close_window() {
@@ -178,4 +178,13 @@ save_map() {
   xdotool type --delay 20 "$1"
   xdotool key Return
   wait_until 60 test -s "$2"
+}
+
+# close_viewer: the dialog first, as nothing else is listened to as long as it is open.
+close_viewer() {
+  press_in_map_dialog 1
+  wait_until 60 has_no_window "$map_dialog"
+  close_window "$preview_window"
+  close_window "$viewer_window"
+  end_of_program
 }
