@@ -39,6 +39,15 @@ TEST_F(DataFilesTest, InstalledFolderComesBeforeTheSources) {
   EXPECT_EQ(find_data_folder(places_), root_ / "source");
 }
 
+// A plug-in of ours in a program of others.
+TEST_F(DataFilesTest, InstalledLibraryComesBeforeTheSources) {
+  places_.executable_folder = root_ / "elsewhere/bin";
+  for (const char* folder : {"prefix/lib", "prefix/lib/x86_64-linux-gnu"}) {
+    places_.library_folder = root_ / folder;
+    EXPECT_EQ(find_data_folder(places_), root_ / "prefix/share/mrpt_terrain");
+  }
+}
+
 TEST_F(DataFilesTest, EnvironmentComesFirst) {
   places_.environment = (root_ / "own").string();
   EXPECT_EQ(find_data_folder(places_), root_ / "own");
@@ -65,6 +74,7 @@ TEST(DataFolderPlacesTest, TheProgramItselfFindsTheFilesOfThisProject) {
   EXPECT_TRUE(fs::exists(find_data_folder() / "params" / "paper.ini"));
   EXPECT_EQ(data_folder_places().environment, std::nullopt);
   EXPECT_TRUE(fs::is_directory(data_folder_places().executable_folder));
+  EXPECT_EQ(data_folder_places().library_folder, data_folder_places().executable_folder);
 }
 
 TEST(DataFolderPlacesTest, TheEnvironmentIsRead) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mrpt_terrain/params/data_files.h"
 
+#include <dlfcn.h>
+
 #include <cstdlib>
 #include <stdexcept>
 #include <system_error>
@@ -18,6 +20,15 @@ bool holds_params(const fs::path& folder) {
   return fs::is_directory(folder / "params", ignored);
 }
 
+// The folder of the file that this function is in: the program, or a library that has it inside.
+fs::path own_folder() {
+  Dl_info info{};
+  if (::dladdr(reinterpret_cast<void*>(&own_folder), &info) == 0) return {};
+  std::error_code error;
+  const fs::path file = fs::canonical(info.dli_fname, error);
+  return error ? fs::path() : file.parent_path();
+}
+
 }  // namespace
 
 DataFolderPlaces data_folder_places() {
@@ -26,6 +37,7 @@ DataFolderPlaces data_folder_places() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) places.executable_folder = program.parent_path();
+  places.library_folder = own_folder();
   places.source_folder = MRPT_TERRAIN_SOURCE_FOLDER;
   return places;
 }
@@ -39,6 +51,11 @@ fs::path find_data_folder(const DataFolderPlaces& places) {
   std::vector<fs::path> candidates;
   if (!places.executable_folder.empty()) {
     candidates.push_back(places.executable_folder.parent_path() / "share" / "mrpt_terrain");
+  }
+  if (!places.library_folder.empty()) {
+    const fs::path above = places.library_folder.parent_path();
+    candidates.push_back(above / "share" / "mrpt_terrain");
+    candidates.push_back(above.parent_path() / "share" / "mrpt_terrain");
   }
   candidates.push_back(places.source_folder);
   std::string tried;
