@@ -102,6 +102,8 @@ TEST(ReadWindow, OfOneScanEqualsItsElevationGrid) {
     const Moments b = expected.moments(slot);
     EXPECT_EQ(a.n, b.n);
     EXPECT_NEAR(a.mean_x, b.mean_x, 1e-5);
+    EXPECT_NEAR(a.mean_y, b.mean_y, 1e-5);
+    EXPECT_NEAR(a.mean_z, b.mean_z, 1e-5);
     EXPECT_NEAR(a.m_xx, b.m_xx, 1e-5);
     EXPECT_NEAR(a.m_xy, b.m_xy, 1e-5);
     EXPECT_NEAR(a.m_yz, b.m_yz, 1e-4);
