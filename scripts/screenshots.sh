@@ -14,7 +14,7 @@ usage() {
 usage: scripts/screenshots.sh [FOLDER]
 
 Starts MRPT's programs with the plug-in on a display of their own and takes the pictures in
-doc/images/mrpt_*.png. Builds the plug-in and terrain-sim first, or uses the build folder FOLDER.
+doc/images/mrpt_*.png. Builds the plug-in, stock_inputs and terrain-sim first, or uses the build folder FOLDER.
 TEXT
 }
 
@@ -63,6 +63,12 @@ picture_observations2map() {
   show_scene observations2map out_mrpt_terrain__CTerrainMap_00.3Dscene
 }
 
+picture_rbpf() {
+  "$folder/bin/stock_inputs" sparse.rawlog .
+  LD_PRELOAD="$library" rbpf-slam "$inis/rbpf-slam.ini" pairs.rawlog </dev/null >rbpf.log 2>&1
+  show_scene rbpf-slam log_rbpf_slam/3D/buildingmap_00007.3Dscene
+}
+
 picture_viewer() {
   start_program viewer.log RawLogViewer -l "$library" "$work/drive.rawlog"
   open_map_dialog
@@ -84,11 +90,11 @@ main() {
   if [[ -z "$folder" ]]; then
     install_packages packages.apt
     configure release
-    build release mrpt_terrain_map terrain-sim
+    build release mrpt_terrain_map stock_inputs terrain-sim
     folder="$project_folder/build/release"
   fi
   folder="$(realpath "$folder")"
-  need icp-slam observations2map RawLogViewer SceneViewer3D
+  need icp-slam observations2map rbpf-slam RawLogViewer SceneViewer3D
   library="$folder/lib/libmrpt_terrain_map.so"
   work="$(mktemp -d)"
   cd "$work"
@@ -99,6 +105,7 @@ main() {
   start_display "$work"
   picture_slam
   picture_observations2map
+  picture_rbpf
   picture_viewer
   cd "$project_folder"
   stop_display

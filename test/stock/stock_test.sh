@@ -148,16 +148,15 @@ test_SceneViewer3D() {
   lacks viewer.log xception
 }
 
-# The exit code is not looked at: Debian's octovis crashes when it is closed, whatever it shows.
+# Only what octovis says about the file is looked at: Debian's octovis 1.9.7 draws nothing with Mesa's
+# software drawing, and sooner or later crashes there, with or without a file.
 test_octovis() {
   need octovis
   make_map
   start_display "$PWD"
   start_program octovis.log octovis "$map.bt" 16
-  wait_for_window 'CTerrainMap_01.bt'
-  # It shows the number of voxels when it has read them all; Mesa's own drawing leaves it black.
-  wait_until 60 grep -q 'octree type OcTree' octovis.log
-  close_window 'CTerrainMap_01.bt'
+  wait_until 60 grep -q 'Reading binary octree type OcTree' octovis.log
+  lacks octovis.log 'ERROR'
 }
 
 test_RawLogViewer() {

@@ -66,7 +66,7 @@ start_program() {
   window_processes+=("$program")
 }
 
-has_window() { wmctrl -l | cut -d' ' -f5- | grep -q -- "$1"; }
+has_window() { wmctrl -l 2>/dev/null | cut -d' ' -f5- | grep -q -- "$1"; }
 has_no_window() { ! has_window "$1"; }
 # A zombie has ended: nobody has asked for its exit code yet.
 has_ended() { ! grep -q '^State:[[:space:]]*[^Z[:space:]]' "/proc/$program/status"; }

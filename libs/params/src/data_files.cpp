@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mrpt_terrain/params/data_files.h"
 
-#include <dlfcn.h>
-
+#include <cstdint>
 #include <cstdlib>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
@@ -20,13 +21,22 @@ bool holds_params(const fs::path& folder) {
   return fs::is_directory(folder / "params", ignored);
 }
 
-// The folder of the file that this function is in: the program, or a library that has it inside.
+// The folder of the file that this function was loaded from: the program, or a library that has it
+// inside. Empty if that is not known.
 fs::path own_folder() {
-  Dl_info info{};
-  if (::dladdr(reinterpret_cast<void*>(&own_folder), &info) == 0) return {};
-  std::error_code error;
-  const fs::path file = fs::canonical(info.dli_fname, error);
-  return error ? fs::path() : file.parent_path();
+  const auto here = reinterpret_cast<std::uintptr_t>(&own_folder);
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    // begin-end rights offset device inode file
+    std::istringstream words(line);
+    std::uintptr_t begin = 0, end = 0;
+    char dash = 0;
+    std::string word, file;
+    if (!(words >> std::hex >> begin >> dash >> end) || here < begin || here >= end) continue;
+    if (!(words >> word >> word >> word >> word >> std::ws) || !std::getline(words, file)) break;
+    return fs::path(file).parent_path();
+  }
+  return {};
 }
 
 }  // namespace
