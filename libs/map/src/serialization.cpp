@@ -204,7 +204,8 @@ std::unique_ptr<CTerrainMap::State> CTerrainMap::State::from_bytes(const std::st
   auto state = std::make_unique<State>(params_of(blob.get_text()));
   const auto revision = blob.get<std::uint64_t>();
   MapWriter& writer = state->writer;
-  writer.next_identity = blob.get<std::uint64_t>();
+  const auto next_identity = blob.get<std::uint64_t>();
+  writer.next_identity = next_identity;
   writer.time = blob.get<double>();
   if (revision != 0) {
     if (writer.fusion) get_tiles(blob, writer.fusion->grid);
@@ -212,15 +213,15 @@ std::unique_ptr<CTerrainMap::State> CTerrainMap::State::from_bytes(const std::st
     const Eigen::Isometry3d T_map_robot = get_scan(blob, scan);
     const auto next = describe_scan(scan, T_map_robot, writer.time, state->params, writer);
     next->revision = revision;
-    std::uint64_t unused = 0;
-    next->name_clusters(nullptr, unused);
+    next->name_clusters(nullptr, writer.next_identity);
     std::vector<std::uint64_t> identities;
     blob.get_all(identities);
-    if (identities.size() != next->clusters.size()) {
-      throw std::runtime_error("its clusters are not those of its points");
-    }
-    for (std::size_t k = 0; k < identities.size(); ++k) {
-      next->clusters[k].identity = identities[k];
+    // A later version of the description may find other clusters in the same scan: they are new.
+    if (identities.size() == next->clusters.size()) {
+      for (std::size_t k = 0; k < identities.size(); ++k) {
+        next->clusters[k].identity = identities[k];
+      }
+      writer.next_identity = next_identity;
     }
     state->publish(next);
   }
