@@ -64,6 +64,8 @@ TEST_P(TerrainMapThreads, ReadersNeverSeeHalfAScan) {
     map.getVisualizationInto(objects);
     EXPECT_LE(map.computeObservationLikelihood(observation, CPose3D()), 0.0);
   }));
+  map.insertObservation(observation, CPose3D());
+  map.clear();
   for (int k = 0; k < 12; ++k) {
     ASSERT_TRUE(map.insertObservation(observation, CPose3D(0.2 * k, 0, 0, 0, 0, 0)));
   }

@@ -36,7 +36,7 @@ struct CTerrainMap::State {
   /// Held while the map changes; readers do without.
   mutable std::mutex writing;
   MapWriter writer;
-  std::unique_ptr<OctreeHalf> octree;  ///< null: the map keeps none
+  std::unique_ptr<OctreeHalf> octree;  ///< null: the map keeps none; never replaced
 
   [[nodiscard]] TerrainSnapshotPtr snapshot() const;
   void publish(TerrainSnapshotPtr next);

@@ -106,9 +106,15 @@ std::shared_ptr<const octomap::OcTree> OctreeHalf::copy() const {
   return copy_;
 }
 
-std::string OctreeHalf::bytes() const {
+void OctreeHalf::clear() {
+  const std::lock_guard lock(mutex_);
+  copy_.reset();
+  tree_.clear();
+}
+
+std::string OctreeHalf::bytes_of(const octomap::OcTree& tree) {
   std::ostringstream out;
-  copy()->writeData(out);
+  tree.writeData(out);
   return out.str();
 }
 

@@ -33,6 +33,8 @@ class OctreeHalf {
   OctreeHalf(const OctreeHalf& other);
   OctreeHalf& operator=(const OctreeHalf&) = delete;
 
+  void clear();
+
   /// Inserts the rays of a scan.
   /// \param T_map_robot pose of the frame of the scan's points
   void insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot);
@@ -51,7 +53,7 @@ class OctreeHalf {
   [[nodiscard]] std::shared_ptr<const octomap::OcTree> copy() const;
 
   /// All nodes with their log-odds, as octomap's `writeData` has them.
-  [[nodiscard]] std::string bytes() const;
+  [[nodiscard]] static std::string bytes_of(const octomap::OcTree& tree);
   /// Replaces all nodes by those of `bytes`. Throws std::runtime_error if they are none.
   void restore(const std::string& bytes);
 

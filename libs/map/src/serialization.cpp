@@ -183,19 +183,25 @@ std::string read_bytes(mrpt::serialization::CArchive& in, std::uint64_t n) {
 }  // namespace
 
 std::string CTerrainMap::State::bytes() const {
-  const std::lock_guard lock(writing);
-  const TerrainSnapshotPtr now = snapshot();
   BlobWriter blob;
   blob.put_text(text_of(params));
-  blob.put(now->revision);
-  blob.put(writer.next_identity);
-  blob.put(writer.time);
+  TerrainSnapshotPtr now;
+  std::shared_ptr<const octomap::OcTree> tree;
+  {
+    // What belongs together is taken together; writing it down needs no lock.
+    const std::lock_guard lock(writing);
+    now = snapshot();
+    if (octree) tree = octree->copy();
+    blob.put(now->revision);
+    blob.put(writer.next_identity);
+    blob.put(writer.time);
+  }
   if (now->revision != 0) {
-    if (writer.fusion) put_tiles(now->fused, blob);
+    if (params.creation.fusion == Fusion::kRolling) put_tiles(now->fused, blob);
     put_scan(*now, blob);
     blob.put_all(identities_of(*now));
   }
-  if (octree) blob.put_text(octree->bytes());
+  if (tree) blob.put_text(OctreeHalf::bytes_of(*tree));
   return blob.bytes();
 }
 

@@ -166,7 +166,7 @@ void CTerrainMap::saveMetricMapRepresentationToFile(const std::string& prefix) c
 
 void CTerrainMap::internal_clear() {
   const std::lock_guard lock(state_->writing);
-  state_->octree = make_octree(state_->params);
+  if (state_->octree) state_->octree->clear();
   state_->writer.fusion = make_fusion(state_->params);
   state_->publish(empty_snapshot(state_->params));
 }
