@@ -33,14 +33,16 @@ struct CTerrainMap::State {
   State& operator=(const State&) = delete;
 
   MapParams params;
-  /// Held while the map changes; readers do without.
+  /// Held while the map changes; who stores it holds it for the copy of the OctoMap, other readers
+  /// do without.
   mutable std::mutex writing;
   MapWriter writer;
   std::unique_ptr<OctreeHalf> octree;  ///< null: the map keeps none; never replaced
 
   [[nodiscard]] TerrainSnapshotPtr snapshot() const;
   void publish(TerrainSnapshotPtr next);
-  /// Describes `scan`, takes it into the OctoMap and publishes what came out. Needs `writing`.
+  /// Takes a scan into the OctoMap and the fused grid, describes what there is and publishes it.
+  /// Needs `writing`.
   bool insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot);
 
   /// All that the map knows (serialization.cpp).
