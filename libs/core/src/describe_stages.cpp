@@ -49,10 +49,7 @@ void measure_height_and_roughness(const DescriptionParams& params, DescriptionWo
     Moments& moments = workspace.cluster_moments[k];
     summarise(description.grid, clusters.slots.row(k), thing, moments);
     thing.height = height_index(description.grid, description.ground, clusters.slots.row(k));
-    const bool needed = class_from_height(thing.height, params.classes) == TerrainClass::kNone;
-    if (needed || params.classes.all_features) {
-      thing.roughness = roughness(moments, params.roughness);
-    }
+    measure_roughness(params, moments, thing);
   }
 }
 
@@ -73,10 +70,13 @@ bool find_wanted_slopes(const DescriptionParams& params, DescriptionWorkspace& w
   return any;
 }
 
-void measure_slopes_by_ransac(const PointsView& points, const SlopeParams& params,
-                              DescriptionWorkspace& workspace, Description& description) {
-  gather_points(workspace.point_slots, description.clusters, workspace.points_wanted,
-                workspace.points_of);
+void measure_slopes_by_ransac(const StageInput& stage, DescriptionWorkspace& workspace,
+                              Description& description) {
+  const PointsView& points = stage.scan.points;
+  const SlopeParams& params = stage.params.slope;
+  const PointSlots& slots =
+      stage.cluster_slots == nullptr ? workspace.point_slots : *stage.cluster_slots;
+  gather_points(slots, description.clusters, workspace.points_wanted, workspace.points_of);
   for (std::size_t k = 0; k < description.things.size(); ++k) {
     if (workspace.points_wanted[k] == 0) continue;
     description.things[k].slope =
@@ -169,7 +169,8 @@ void fill_in_slopes_from_moments(const SlopeParams& params, DescriptionWorkspace
   }
 }
 
-// Slope of the clusters whose class depends on it.
+}  // namespace
+
 void measure_slopes(const StageInput& stage, DescriptionWorkspace& workspace,
                     Description& description) {
   const DescriptionParams& params = stage.params;
@@ -181,7 +182,7 @@ void measure_slopes(const StageInput& stage, DescriptionWorkspace& workspace,
   if (params.slope.method == SlopeMethod::kBeam) {
     measure_slopes_by_beams(stage, workspace, description);
   } else {
-    measure_slopes_by_ransac(stage.scan.points, params.slope, workspace, description);
+    measure_slopes_by_ransac(stage, workspace, description);
   }
   if (stage.is_fused()) fill_in_slopes_from_moments(params.slope, workspace, description);
 }
@@ -195,7 +196,13 @@ void classify_all(const ClassParams& params, std::vector<TerrainClass>& class_of
   }
 }
 
-}  // namespace
+void measure_roughness(const DescriptionParams& params, const Moments& moments,
+                       ClusterDescription& thing) {
+  const bool needed = class_from_height(thing.height, params.classes) == TerrainClass::kNone;
+  if (needed || params.classes.all_features) {
+    thing.roughness = roughness(moments, params.roughness);
+  }
+}
 
 void describe_cells(const StageInput& stage, DescriptionWorkspace& workspace,
                     Description& description) {

@@ -15,6 +15,10 @@ struct StageInput {
   /// cluster's cells that the scan must hit for a slope from points.
   const double* points_cover = nullptr;
 
+  /// Slots of the points that clusters consist of, where not all points of their cells belong to
+  /// them (field mode); null: `DescriptionWorkspace::point_slots`.
+  const PointSlots* cluster_slots = nullptr;
+
   [[nodiscard]] bool is_fused() const { return points_cover != nullptr; }
 };
 
@@ -22,5 +26,17 @@ struct StageInput {
 /// labels.
 void describe_cells(const StageInput& stage, DescriptionWorkspace& workspace,
                     Description& description);
+
+/// Slopes of the clusters whose class depends on them, or of all; (5), (6).
+void measure_slopes(const StageInput& stage, DescriptionWorkspace& workspace,
+                    Description& description);
+
+/// Classes of all clusters, also in `class_of`; Table 1.
+void classify_all(const ClassParams& params, std::vector<TerrainClass>& class_of,
+                  std::vector<ClusterDescription>& things);
+
+/// Features of one cluster that its class is told from: roughness where it is needed.
+void measure_roughness(const DescriptionParams& params, const Moments& moments,
+                       ClusterDescription& thing);
 
 }  // namespace mrpt_terrain

@@ -49,14 +49,14 @@ void count(UnknownReason reason, ProjectionCounts& counts) {
 // Leaves the CellId of each point, or the code of its reason, in `point_slots`. Views and geometry
 // are copies so that the compiler can keep them in registers: a store to the results could change
 // what a reference leads to.
-ProjectionCounts project(const PointsView points, const GridParams& params,
+ProjectionCounts project(const PointsView points, const float* heights, const GridParams& params,
                          const GridGeometry geometry, std::uint8_t* hit,
                          std::int32_t* point_slots) {
   constexpr float kLowest = std::numeric_limits<float>::lowest();
   const auto max_height = static_cast<float>(params.max_height);
   ProjectionCounts counts;
   for (std::size_t i = 0; i < points.size; ++i) {
-    const float z = points.z[i];
+    const float z = heights[i];
     CellIndex cell;
     if (z < max_height && z >= kLowest && geometry.cell_at(points.x[i], points.y[i], cell)) {
       const std::int32_t id = value_of(geometry.id_of(cell));
@@ -145,11 +145,11 @@ void find_means(ElevationGrid& grid) {
 
 ProjectionCounts build_elevation_grid(const PointsView& points, const GridParams& params,
                                       ElevationGridWorkspace& workspace, ElevationGrid& grid,
-                                      PointSlots& point_slots) {
+                                      PointSlots& point_slots, const float* heights) {
   prepare(params, workspace, grid);
   point_slots.resize(points.size);
-  const ProjectionCounts counts =
-      project(points, params, grid.geometry, workspace.hit.data(), point_slots.data());
+  const ProjectionCounts counts = project(points, heights == nullptr ? points.z : heights, params,
+                                          grid.geometry, workspace.hit.data(), point_slots.data());
   number_observed_cells(workspace.hit, grid);
   replace_cells_by_slots(grid.slot_of.data(), point_slots);
   grid.h_min.assign(grid.observed(), std::numeric_limits<float>::max());

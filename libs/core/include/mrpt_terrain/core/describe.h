@@ -3,13 +3,18 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "mrpt_terrain/core/beam_slope.h"
 #include "mrpt_terrain/core/classes.h"
 #include "mrpt_terrain/core/clusters.h"
 #include "mrpt_terrain/core/elevation_grid.h"
+#include "mrpt_terrain/core/field_cells.h"
+#include "mrpt_terrain/core/field_clusters.h"
 #include "mrpt_terrain/core/ground.h"
+#include "mrpt_terrain/core/ground_labels.h"
+#include "mrpt_terrain/core/ground_surface.h"
 #include "mrpt_terrain/core/height_index.h"
 #include "mrpt_terrain/core/label_stage.h"
 #include "mrpt_terrain/core/labels.h"
@@ -18,10 +23,35 @@
 
 namespace mrpt_terrain {
 
+/// How a scan is described.
+enum class DescriptionMode : std::uint8_t {
+  kPaper = 0,  ///< the published method to the letter: heights about z = 0
+  kField,      ///< heights about a local ground reference, for real ground
+};
+constexpr EnumNames<DescriptionMode, 2> enum_names(DescriptionMode) {
+  return {{{DescriptionMode::kPaper, "paper"}, {DescriptionMode::kField, "field"}}};
+}
+
+/// Which of the two descriptions is wanted.
+struct ModeParams {
+  DescriptionMode mode = DescriptionMode::kPaper;
+
+  template <class Self, class Visitor>
+  static void visit_params(Self& self, Visitor&& visit) {
+    visit(self.mode, ParamInfo{"mode", "", "", 0, 0,
+                               "paper: the published method to the letter, heights about z = 0; "
+                               "field: heights about a local ground reference, for real ground"});
+  }
+};
+
 /// All parameters of the description of one scan, a struct per stage. The defaults are the
 /// paper's values where it gives them (params/paper.ini).
 struct DescriptionParams {
+  ModeParams description;
   GridParams grid;
+  GroundSurfaceParams ground_surface;
+  GroundLabelParams ground_labels;
+  FieldClusterParams field_clusters;
   GroundParams ground;
   ClusterParams clusters;
   RoughnessParams roughness;
@@ -31,7 +61,11 @@ struct DescriptionParams {
 
   template <class Self, class Visitor>
   static void visit_sections(Self& self, Visitor&& visit) {
+    visit(self.description, "description", "Paper mode or field mode");
     visit(self.grid, "grid", "Extent and resolution of the elevation grid");
+    visit(self.ground_surface, "ground_surface", "Field mode: local ground reference");
+    visit(self.ground_labels, "ground_labels", "Field mode: points of the ground and above it");
+    visit(self.field_clusters, "field_clusters", "Field mode: clusters that are things");
     visit(self.ground, "ground", "Ground segmentation, eqs. (1) and (2)");
     visit(self.clusters, "clusters", "Grids clustering");
     visit(self.roughness, "roughness", "Roughness, eq. (4) and Algorithm 1");
@@ -88,6 +122,7 @@ class StageListener {
 struct Description {
   ElevationGrid grid;
   GroundSegmentation ground;
+  FieldCells field;  ///< field mode: the cells against the ground reference; empty in paper mode
   Clusters clusters;
   std::vector<ClusterDescription> things;  ///< one per cluster, same numbers
   CellLabels cells;                        ///< one per slot of the grid
@@ -95,17 +130,31 @@ struct Description {
   ProjectionCounts projection;
 };
 
+/// Field mode: what is summed over the points of a cluster. Metres.
+struct ClusterSums {
+  MomentSums points;
+  double height = 0.0;                                ///< above the ground reference
+  float low = std::numeric_limits<float>::max();      ///< above the ground reference
+  float high = std::numeric_limits<float>::lowest();  ///< above the ground reference
+  float z_low = std::numeric_limits<float>::max();
+  float z_high = std::numeric_limits<float>::lowest();
+};
+
 /// Scratch memory of all stages. Reuse it together with the `Description`: scans of similar size
 /// are then described without allocating.
 struct DescriptionWorkspace {
   ElevationGridWorkspace grid;
   GroundWorkspace ground;
+  FieldWorkspace field;
+  FieldClusterWorkspace field_clusters;
   ClusterWorkspace clusters;
   SlopeWorkspace slope;
   BeamSlopeWorkspace beam_slope;
   std::vector<std::uint8_t> slot_wanted;
   LabelWorkspace labels;
   PointSlots point_slots;
+  PointSlots cluster_slots;               ///< field mode, like `cluster_sums`
+  std::vector<ClusterSums> cluster_sums;  ///< per cluster
   std::vector<Moments> cluster_moments;
   std::vector<std::int32_t> points_wanted;
   std::vector<std::int32_t> slope_wanted;  ///< fused grids only, like `scan_sums`
@@ -125,7 +174,9 @@ struct ScanView {
 };
 
 /// Describes one scan by the method of Meng, Cao et al. 2018: elevation grid, ground segmentation,
-/// clustering, features, classes, labels.
+/// clustering, features, classes, labels. In field mode (`params.description.mode`), ground
+/// segmentation, clustering and heights are those of doc/field-mode.md, relative to a local ground
+/// reference.
 ///
 /// The same points and parameters give the same bytes on every run. No points, or none in the map,
 /// give an empty description and counts that say why.

@@ -93,8 +93,9 @@ struct ElevationGridWorkspace {
 /// \param points in the robot frame, metres
 /// \param[in,out] grid overwritten; keeps its memory, so that equal geometry does not allocate
 /// \param[out] point_slots per point: its slot, or a reason why it has none
+/// \param heights per point: what `max_height` limits, metres; null: its z
 ProjectionCounts build_elevation_grid(const PointsView& points, const GridParams& params,
                                       ElevationGridWorkspace& workspace, ElevationGrid& grid,
-                                      PointSlots& point_slots);
+                                      PointSlots& point_slots, const float* heights = nullptr);
 
 }  // namespace mrpt_terrain

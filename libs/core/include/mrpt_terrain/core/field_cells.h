@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mrpt_terrain/core/elevation_grid.h"
+#include "mrpt_terrain/core/ground.h"
+#include "mrpt_terrain/core/ground_labels.h"
+#include "mrpt_terrain/core/ground_surface.h"
+#include "mrpt_terrain/core/labels.h"
+
+namespace mrpt_terrain {
+
+/// What the points of a scan are against the local ground reference, in the order of the scan.
+struct FieldPoints {
+  std::vector<float> height;  ///< above the reference, metres; NaN for points that are not finite
+  std::vector<Support> support;  ///< kUnknown beyond the reference
+};
+
+/// The observed cells of a grid against the local ground reference; arrays over its slots. Heights
+/// are metres above the reference.
+struct FieldCells {
+  std::vector<float> ground;        ///< height of the reference at the cell's centre, grid frame
+  std::vector<std::int32_t> on;     ///< points on the ground
+  std::vector<std::int32_t> above;  ///< points above it and below `GridParams::max_height`
+  std::vector<std::int32_t> below;  ///< points below it
+  std::vector<float> low;           ///< lowest point above the ground; 0 without
+  std::vector<float> high;          ///< highest of them; 0 without
+
+  [[nodiscard]] std::size_t size() const { return ground.size(); }
+};
+
+/// Scratch memory of field mode's ground stages.
+struct FieldWorkspace {
+  GroundSurfaceWorkspace surface_workspace;
+  GroundSurface surface;
+  GroundLabelWorkspace label_workspace;
+  std::vector<float> threshold;
+  std::vector<Support> support;  ///< in the order of the surface's cells
+  FieldPoints points;
+};
+
+/// Finds the ground reference and labels the points by it.
+void find_field_ground(const PointsView& scan, const GroundSurfaceParams& surface,
+                       const GroundLabelParams& labels, FieldWorkspace& workspace);
+
+/// Counts the points of every cell by their support. A cell is non-ground (C_N) if it holds a point
+/// above or below the ground.
+/// \param point_slots of the grid that `build_elevation_grid` made of the same scan
+/// \param[out] ground rule kHigh or kLow in C_N; h_mean above the reference
+void measure_field_cells(const FieldWorkspace& workspace, const ElevationGrid& grid,
+                         const PointSlots& point_slots, FieldCells& cells,
+                         GroundSegmentation& ground);
+
+}  // namespace mrpt_terrain

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mrpt_terrain/core/clusters.h"
+#include "mrpt_terrain/core/field_cells.h"
+#include "mrpt_terrain/core/param_info.h"
+
+namespace mrpt_terrain {
+
+/// How cells become things.
+struct FieldClusterParams {
+  int t_c = 2;                 ///< fewest cells of a thing
+  int t_points = 5;            ///< fewest points of a thing
+  double link = 0.25;          ///< metres: gap between cells of one thing
+  double link_growth = 0.012;  ///< and this much more per metre of distance from the robot
+  double step = 0.3;           ///< metres: gap in height between cells of one thing
+
+  template <class Self, class Visitor>
+  static void visit_params(Self& self, Visitor&& visit) {
+    visit(self.t_c, ParamInfo{"t_c", "T_c", "", 1, 1000000, "things of fewer cells are dropped"});
+    visit(self.t_points,
+          ParamInfo{"t_points", "", "", 1, 1000000, "things of fewer points are dropped"});
+    visit(self.link,
+          ParamInfo{"link", "", "m", 0.0, 10.0, "widest gap between cells of one thing"});
+    visit(self.link_growth, ParamInfo{"link_growth", "", "m/m", 0.0, 1.0,
+                                      "and this much more per metre of distance from the robot"});
+    visit(self.step, ParamInfo{"step", "", "m", 0.0, 10.0,
+                               "greatest gap in height between cells of one thing"});
+  }
+};
+
+/// Scratch memory of `find_field_clusters`.
+struct FieldClusterWorkspace {
+  std::vector<std::int32_t> parent;  ///< per slot: another slot of the same thing, or itself
+  std::vector<std::int32_t> cells_of;
+  std::vector<std::int32_t> points_of;
+  std::vector<std::int32_t> number_of;
+};
+
+/// Brings non-ground cells together that are near each other, in the plane and in height. Cells
+/// above the ground and cells below it are never one thing. How near is enough grows with distance,
+/// as the gaps between rings and between columns of a sensor do.
+void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& ground,
+                         const FieldCells& cells, const FieldClusterParams& params,
+                         FieldClusterWorkspace& workspace, Clusters& result);
+
+}  // namespace mrpt_terrain

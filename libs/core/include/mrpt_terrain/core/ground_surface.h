@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mrpt_terrain/core/cell_points.h"
+#include "mrpt_terrain/core/param_info.h"
+#include "mrpt_terrain/core/points.h"
+
+/// \file
+/// The local ground reference of field mode: a height of the ground for every place around the
+/// robot, from one scan. doc/method.md explains the steps with their sources.
+namespace mrpt_terrain {
+
+/// How the ground is told from what stands on it. Lengths are metres.
+struct GroundSurfaceParams {
+  double reach = 102.4;    ///< the reference covers a square of twice this side about the robot
+  double cell_size = 0.4;  ///< of the finest level
+  double max_tilt = 0.3490658503988659;  ///< of the ground under the robot in its frame, radians
+  double max_offset = 0.6;               ///< of the ground under the robot from z = 0
+  double low_band = 0.06;      ///< points this far above the lowest of a cell give its low height
+  double low_part = 0.4;       ///< points this far above the lowest of a cell tell how rough it is
+  double tolerance = 0.06;     ///< of low heights above the reference, on every level
+  double bend = 0.12;          ///< the same per metre of a level's cell: how far ground rises in it
+  double dip = 2.0;            ///< tolerance of heights below the reference over that above
+  double low_weight = 30.0;    ///< weight of a low height below the reference over one above
+  double smooth_sigma = 0.03;  ///< roughness at which a cell counts half
+  double rough_weight = 0.5;   ///< how little rough cells count between smooth ones
+  double hold = 1.0;           ///< weight of the coarser level, in cells
+
+  template <class Self, class Visitor>
+  static void visit_params(Self& self, Visitor&& visit) {
+    visit(self.reach, ParamInfo{"reach", "", "m", 5.0, 400.0,
+                                "the reference covers this distance to all four sides"});
+    visit(self.cell_size,
+          ParamInfo{"cell_size", "", "m", 0.1, 2.0, "cells of the reference at its finest"});
+    visit(self.max_tilt, ParamInfo{"max_tilt_deg", "", "deg", 0.0, 45.0,
+                                   "greatest tilt of the ground under the robot in its frame"});
+    visit(self.max_offset, ParamInfo{"max_offset", "", "m", 0.0, 10.0,
+                                     "greatest height of the ground under the robot"});
+    visit(self.low_band,
+          ParamInfo{"low_band", "", "m", 0.001, 1.0,
+                    "points this far above the lowest of a cell give its low height"});
+    visit(self.low_part,
+          ParamInfo{"low_part", "", "m", 0.01, 5.0,
+                    "points this far above the lowest of a cell tell how rough it is"});
+    visit(self.tolerance, ParamInfo{"tolerance", "", "m", 0.005, 1.0,
+                                    "low heights this far above the coarser level are ground"});
+    visit(self.bend,
+          ParamInfo{"bend", "", "m/m", 0.0, 2.0, "and this much more per metre of a cell"});
+    visit(self.dip, ParamInfo{"dip", "", "", 0.1, 100.0,
+                              "the same below the coarser level, over that above"});
+    visit(self.low_weight, ParamInfo{"low_weight", "", "", 1.0, 1000.0,
+                                     "weight of heights below the reference over those above"});
+    visit(self.smooth_sigma,
+          ParamInfo{"smooth_sigma", "", "m", 0.001, 1.0, "roughness at which a cell counts half"});
+    visit(self.rough_weight,
+          ParamInfo{"rough_weight", "", "", 0.0, 100.0,
+                    "how little rough cells count between smooth ones; 0: as much as smooth ones"});
+    visit(self.hold, ParamInfo{"hold", "", "", 0.001, 100.0,
+                               "weight of the coarser level in the mean, in cells"});
+  }
+};
+
+/// What the points of an occupied cell say of the ground in it. Metres, frame of the scan.
+struct GroundCell {
+  float low = 0.0F;     ///< mean height of the points of its low band
+  float smooth = 0.0F;  ///< 0 to 1: 1 / (1 + (roughness / smooth_sigma)^4)
+  float weight = 0.0F;  ///< of `low` in the reference, 0 to 1
+};
+
+/// The ground as a height over x and y. Frame of the scan, metres.
+struct GroundSurface {
+  /// Plane of the ground near the robot: z = gradient_x x + gradient_y y + offset.
+  float gradient_x = 0.0F, gradient_y = 0.0F, offset = 0.0F;
+  CellPoints cells;                ///< the points, cell by cell
+  std::vector<GroundCell> ground;  ///< per slot of `cells`
+  std::vector<float> node;         ///< per cell of the lattice: height at its centre
+  std::vector<float> height;       ///< per point of `cells`: above the reference
+
+  [[nodiscard]] const SquareLattice& lattice() const { return cells.lattice; }
+  /// Height of the ground; beyond the lattice that of its edge.
+  [[nodiscard]] float height_at(float x, float y) const;
+};
+
+/// Levels of the reference; each has cells twice as large as those of the one below it.
+inline constexpr int kSurfaceLevels = 7;
+
+/// Sums of the low points of a cell about its centre in x and y.
+struct LowSums {
+  float n = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
+};
+
+/// Weighted sums of differences between low heights and a level.
+struct LevelSums {
+  float sum = 0.0F, weight = 0.0F;            ///< of the cell and, less, of those around it
+  float cell_sum = 0.0F, cell_weight = 0.0F;  ///< of the cell alone
+};
+
+/// Scratch memory of `find_ground_surface`.
+struct GroundSurfaceWorkspace {
+  CellPointsWorkspace sort;
+  std::vector<LowSums> sums;                                 ///< per slot
+  std::vector<float> part;                                   ///< per slot: share of the low band
+  std::array<std::vector<float>, kSurfaceLevels> level;      ///< heights at the centres of cells
+  std::vector<LevelSums> level_sums;                         ///< per cell of a level
+  std::vector<std::int32_t> touched;                         ///< cells of a level
+  std::vector<float> mixed;                                  ///< a row of a level
+  std::vector<float> share, count;                           ///< per cell of level 4
+  std::vector<float> candidate_x, candidate_y, candidate_z;  ///< for the plane
+};
+
+/// Finds the ground that the points of a scan show.
+///
+/// A plane near the robot is refined on seven levels of cells, from 64 cells down to one: on every
+/// level, the low heights of the cells that lie within a tolerance of the reference so far are
+/// averaged and carried on to the next. Heights below the reference count more than those above
+/// it, smooth cells more than rough ones, cells with points over their low band less.
+/// \param scan metres; z = 0 near the ground under the robot, up to `max_offset` and `max_tilt`
+/// \param[in,out] result overwritten; keeps its memory. Without points it is the plane z = 0.
+void find_ground_surface(const PointsView& scan, const GroundSurfaceParams& params,
+                         GroundSurfaceWorkspace& workspace, GroundSurface& result);
+
+}  // namespace mrpt_terrain

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "describe_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "describe_stages.h"
+
+namespace mrpt_terrain {
+namespace {
+
+bool stands_out(Support support) {
+  return support == Support::kAbove || support == Support::kBelow;
+}
+
+// Slots of the points that clusters consist of.
+void find_cluster_slots(const FieldPoints& points, const PointSlots& point_slots,
+                        PointSlots& cluster_slots) {
+  cluster_slots.resize(point_slots.size());
+  for (std::size_t i = 0; i < point_slots.size(); ++i) {
+    cluster_slots[i] =
+        stands_out(points.support[i]) ? point_slots[i] : point_slot_of(UnknownReason::kNone);
+  }
+}
+
+// Corners of the cells of a cluster.
+void measure_extent(const ElevationGrid& grid, IndexRange slots, ClusterDescription& thing) {
+  CellIndex low = grid.geometry.index_of(grid.cell[static_cast<std::size_t>(*slots.begin())]);
+  CellIndex high = low;
+  for (const std::int32_t slot : slots) {
+    const CellIndex cell = grid.geometry.index_of(grid.cell[static_cast<std::size_t>(slot)]);
+    low = {std::min(low.l, cell.l), std::min(low.w, cell.w)};
+    high = {std::max(high.l, cell.l), std::max(high.w, cell.w)};
+  }
+  const double half = grid.geometry.cell_size() / 2;
+  const Position2 low_centre = grid.geometry.centre_of(low);
+  const Position2 high_centre = grid.geometry.centre_of(high);
+  thing.min_corner = {low_centre.x - half, low_centre.y - half};
+  thing.max_corner = {high_centre.x + half, high_centre.y + half};
+  thing.cells = static_cast<std::int32_t>(slots.size());
+}
+
+// Height index (3) with heights above the reference: a thing on falling ground keeps its sign.
+HeightIndex height_above_ground(const FieldCells& cells, IndexRange slots, double mean,
+                                double lowest, double highest) {
+  HeightIndex result;
+  bool above = false;
+  for (const std::int32_t slot : slots) above |= cells.above[static_cast<std::size_t>(slot)] > 0;
+  result.h_m = mean;
+  result.h_d = above ? std::max(highest, 0.0) : std::max(-lowest, 0.0);
+  result.h_f = above ? std::max(result.h_d, mean) : std::min(-result.h_d, mean);
+  return result;
+}
+
+void measure_things(const StageInput& stage, DescriptionWorkspace& workspace,
+                    Description& description) {
+  const PointsView& points = stage.scan.points;
+  const FieldPoints& field = workspace.field.points;
+  const Clusters& clusters = description.clusters;
+  workspace.cluster_sums.assign(clusters.size(), ClusterSums{});
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const std::int32_t slot = workspace.cluster_slots[i];
+    if (slot < 0) continue;
+    const std::int32_t cluster = clusters.cluster_of[static_cast<std::size_t>(slot)];
+    if (cluster == kNoCluster) continue;
+    ClusterSums& sums = workspace.cluster_sums[static_cast<std::size_t>(cluster)];
+    sums.points.add(points.x[i], points.y[i], points.z[i]);
+    sums.height += field.height[i];
+    sums.low = std::min(sums.low, field.height[i]);
+    sums.high = std::max(sums.high, field.height[i]);
+    sums.z_low = std::min(sums.z_low, points.z[i]);
+    sums.z_high = std::max(sums.z_high, points.z[i]);
+  }
+  description.things.assign(clusters.size(), ClusterDescription{});
+  workspace.cluster_moments.resize(clusters.size());
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    const ClusterSums& sums = workspace.cluster_sums[k];
+    ClusterDescription& thing = description.things[k];
+    const Moments moments = workspace.cluster_moments[k] = moments_from(sums.points);
+    measure_extent(description.grid, clusters.slots.row(k), thing);
+    thing.points = static_cast<std::int32_t>(moments.n);
+    thing.centroid = {moments.mean_x, moments.mean_y};
+    thing.h_min = sums.z_low;
+    thing.h_max = sums.z_high;
+    thing.height = height_above_ground(description.field, clusters.slots.row(k),
+                                       sums.height / std::max(moments.n, 1.0), sums.low, sums.high);
+    measure_roughness(stage.params, moments, thing);
+  }
+}
+
+void label_field_cells(const Description& description, const std::vector<TerrainClass>& class_of,
+                       CellLabels& result) {
+  label_cells(description.ground, description.clusters, class_of, result);
+}
+
+void label_field_points(const DescriptionWorkspace& workspace, const Description& description,
+                        PointLabels& result) {
+  const std::size_t n = workspace.point_slots.size();
+  result.support = workspace.field.points.support;
+  result.reason.resize(n);
+  result.terrain_class.resize(n);
+  result.cluster.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool known = result.support[i] != Support::kUnknown;
+    result.reason[i] = known ? UnknownReason::kNone : reason_of(workspace.point_slots[i]);
+    const std::int32_t slot = workspace.cluster_slots[i];
+    result.cluster[i] =
+        slot < 0 ? kNoCluster : description.clusters.cluster_of[static_cast<std::size_t>(slot)];
+    result.terrain_class[i] = result.cluster[i] == kNoCluster
+                                  ? TerrainClass::kNone
+                                  : workspace.class_of[static_cast<std::size_t>(result.cluster[i])];
+  }
+}
+
+}  // namespace
+
+void describe_field(const ScanView& scan, const DescriptionParams& params,
+                    DescriptionWorkspace& workspace, Description& description,
+                    StageListener* listener) {
+  const StageInput stage{scan, params, listener, nullptr, &workspace.cluster_slots};
+  const auto done = [listener](Stage what) {
+    if (listener != nullptr) listener->stage_done(what);
+  };
+  find_field_ground(scan.points, params.ground_surface, params.ground_labels, workspace.field);
+  done(Stage::kGround);
+  description.projection =
+      build_elevation_grid(scan.points, params.grid, workspace.grid, description.grid,
+                           workspace.point_slots, workspace.field.points.height.data());
+  measure_field_cells(workspace.field, description.grid, workspace.point_slots, description.field,
+                      description.ground);
+  done(Stage::kGrid);
+  find_field_clusters(description.grid, description.ground, description.field,
+                      params.field_clusters, workspace.field_clusters, description.clusters);
+  find_cluster_slots(workspace.field.points, workspace.point_slots, workspace.cluster_slots);
+  done(Stage::kClusters);
+  measure_things(stage, workspace, description);
+  done(Stage::kHeightAndRoughness);
+  measure_slopes(stage, workspace, description);
+  done(Stage::kSlope);
+  classify_all(params.classes, workspace.class_of, description.things);
+  done(Stage::kClasses);
+  label_field_cells(description, workspace.class_of, description.cells);
+  label_field_points(workspace, description, description.labels);
+  done(Stage::kLabels);
+}
+
+}  // namespace mrpt_terrain

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/core/field_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace mrpt_terrain {
+namespace {
+
+// From the order of the cells to that of the scan.
+void put_in_order(const PointsView& scan, const GroundSurface& surface,
+                  const std::vector<Support>& support, FieldPoints& points) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  points.height.resize(scan.size);
+  points.support.assign(scan.size, Support::kUnknown);
+  if (surface.height.size() != scan.size) {
+    for (std::size_t i = 0; i < scan.size; ++i) {
+      const bool finite =
+          std::isfinite(scan.x[i]) && std::isfinite(scan.y[i]) && std::isfinite(scan.z[i]);
+      points.height[i] = finite ? 0.0F : kNan;
+    }
+  }
+  for (std::size_t k = 0; k < surface.height.size(); ++k) {
+    const auto i = static_cast<std::size_t>(surface.cells.points[k].index);
+    points.height[i] = surface.height[k];
+    points.support[i] = support[k];
+  }
+}
+
+void reset(std::size_t n, FieldCells& cells) {
+  cells.ground.resize(n);
+  for (auto* counts : {&cells.on, &cells.above, &cells.below}) counts->assign(n, 0);
+  cells.low.assign(n, std::numeric_limits<float>::max());
+  cells.high.assign(n, 0.0F);
+}
+
+void count_points(const FieldPoints& points, const PointSlots& point_slots, FieldCells& cells) {
+  for (std::size_t i = 0; i < point_slots.size(); ++i) {
+    if (point_slots[i] < 0) continue;
+    const auto slot = static_cast<std::size_t>(point_slots[i]);
+    const float height = points.height[i];
+    switch (points.support[i]) {
+      case Support::kGround:
+        ++cells.on[slot];
+        break;
+      case Support::kAbove:
+        ++cells.above[slot];
+        cells.low[slot] = std::min(cells.low[slot], height);
+        cells.high[slot] = std::max(cells.high[slot], height);
+        break;
+      case Support::kBelow:
+        ++cells.below[slot];
+        break;
+      case Support::kUnknown:
+        break;
+    }
+  }
+}
+
+}  // namespace
+
+void find_field_ground(const PointsView& scan, const GroundSurfaceParams& surface,
+                       const GroundLabelParams& labels, FieldWorkspace& workspace) {
+  find_ground_surface(scan, surface, workspace.surface_workspace, workspace.surface);
+  label_by_height(workspace.surface, labels, workspace.label_workspace, workspace.threshold,
+                  workspace.support);
+  put_in_order(scan, workspace.surface, workspace.support, workspace.points);
+}
+
+void measure_field_cells(const FieldWorkspace& workspace, const ElevationGrid& grid,
+                         const PointSlots& point_slots, FieldCells& cells,
+                         GroundSegmentation& ground) {
+  reset(grid.observed(), cells);
+  count_points(workspace.points, point_slots, cells);
+  ground.rule.resize(grid.observed());
+  ground.h_mean.resize(grid.observed());
+  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
+    const Position2 centre = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[slot]));
+    cells.ground[slot] =
+        workspace.surface.height_at(static_cast<float>(centre.x), static_cast<float>(centre.y));
+    ground.h_mean[slot] = grid.h_mean[slot] - cells.ground[slot];
+    ground.rule[slot] = cells.above[slot] > 0   ? GroundRule::kHigh
+                        : cells.below[slot] > 0 ? GroundRule::kLow
+                                                : GroundRule::kGround;
+    if (cells.above[slot] == 0) cells.low[slot] = 0.0F;
+  }
+}
+
+}  // namespace mrpt_terrain

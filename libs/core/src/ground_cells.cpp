@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ground_cells.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+#include "surface_levels.h"
+
+namespace mrpt_terrain {
+namespace {
+
+// Points this far above the lowest of their cell are what stands on its ground, metres.
+constexpr float kHighPart = 2.0F;
+// How much a point over the low band takes from the weight of a cell, in points of the band.
+constexpr float kHighPointWeight = 3.0F;
+// Level on whose cells rough cells are compared with smooth ones around.
+constexpr int kRoughLevel = 4;
+
+// Heights of the points of a cell above some reference, which is linear in it.
+struct Heights {
+  const CellPoint* first;
+  const CellPoint* last;
+  float centre_x, centre_y;
+  LevelView::Linear reference;
+
+  [[nodiscard]] float of(const CellPoint& point) const {
+    return point.z - reference.height - reference.gradient_x * (point.x - centre_x) -
+           reference.gradient_y * (point.y - centre_y);
+  }
+};
+
+Heights heights_in(const CellPoints& cells, std::size_t slot, const LevelView::Linear& reference) {
+  const CellPoint* points = cells.points.data();
+  return {points + cells.first[slot], points + cells.first[slot + 1],
+          cells.lattice.centre(cells.cell[slot].row), cells.lattice.centre(cells.cell[slot].column),
+          reference};
+}
+
+struct LowBand {
+  float lowest, mean;
+  float share;  // of the band's points, those above it counted `kHighPointWeight` times
+};
+
+LowBand low_band_of(const Heights& heights, float band) {
+  float lowest = std::numeric_limits<float>::max();
+  for (const CellPoint* p = heights.first; p != heights.last; ++p)
+    lowest = std::min(lowest, heights.of(*p));
+  float sum = 0.0F, low = 0.0F, high = 0.0F;
+  for (const CellPoint* p = heights.first; p != heights.last; ++p) {
+    const float above = heights.of(*p) - lowest;
+    const float in_band = above <= band ? 1.0F : 0.0F;
+    low += in_band;
+    sum += in_band * above;
+    high += above > band && above < kHighPart ? 1.0F : 0.0F;
+  }
+  return {lowest, lowest + sum / low, low / (low + kHighPointWeight * high)};
+}
+
+LowSums low_sums_of(const Heights& heights, float top) {
+  LowSums sums;
+  for (const CellPoint* p = heights.first; p != heights.last; ++p) {
+    const float z = p->z;
+    if (z > top) continue;
+    const float x = p->x - heights.centre_x;
+    const float y = p->y - heights.centre_y;
+    sums.n += 1.0F;
+    sums.x += x;
+    sums.y += y;
+    sums.z += z;
+    sums.xx += x * x;
+    sums.xy += x * y;
+    sums.yy += y * y;
+    sums.xz += x * z;
+    sums.yz += y * z;
+    sums.zz += z * z;
+  }
+  return sums;
+}
+
+// Adds the sums of a cell whose centre is shifted by (x, y), and whose heights are taken from z.
+void add_shifted(const LowSums& from, float x, float y, float z, LowSums& to) {
+  const float fx = from.x + from.n * x, fy = from.y + from.n * y, fz = from.z - from.n * z;
+  to.n += from.n;
+  to.x += fx;
+  to.y += fy;
+  to.z += fz;
+  to.xx += from.xx + x * (from.x + fx);
+  to.xy += from.xy + x * from.y + y * fx;
+  to.yy += from.yy + y * (from.y + fy);
+  to.xz += from.xz - z * from.x + x * fz;
+  to.yz += from.yz - z * from.y + y * fz;
+  to.zz += from.zz - z * (from.z + fz);
+}
+
+// Variance across the plane of the points, by one over the trace of the inverse covariance: it is
+// at most the smallest eigenvalue and at least a third of it, and needs no eigenvalues.
+float variance_across(const LowSums& s) {
+  const float x = s.x / s.n, y = s.y / s.n, z = s.z / s.n;
+  const float a = s.xx / s.n - x * x, b = s.xy / s.n - x * y, c = s.yy / s.n - y * y;
+  const float d = s.xz / s.n - x * z, e = s.yz / s.n - y * z, f = s.zz / s.n - z * z;
+  const float ac = a * c - b * b, af = a * f - d * d, cf = c * f - e * e;
+  const float determinant = f * ac - d * (d * c - b * e) + e * (d * b - a * e);
+  const float minors = ac + af + cf;
+  return minors > 0.0F ? std::max(determinant / minors, 0.0F) : 0.0F;
+}
+
+// Points of the nine cells about a slot, heights from its own mean.
+LowSums sums_around(const CellPoints& cells, const std::vector<LowSums>& sums, std::size_t slot) {
+  const SquareLattice& lattice = cells.lattice;
+  const auto [row, column] = cells.cell[slot];
+  const float z = sums[slot].z / sums[slot].n;
+  LowSums around;
+  for (std::int32_t i = std::max(row - 1, 0); i <= std::min(row + 1, lattice.side - 1); ++i) {
+    for (std::int32_t j = std::max(column - 1, 0); j <= std::min(column + 1, lattice.side - 1);
+         ++j) {
+      const std::int32_t other = cells.slot_of[static_cast<std::size_t>(i * lattice.side + j)];
+      if (other < 0) continue;
+      add_shifted(sums[static_cast<std::size_t>(other)],
+                  static_cast<float>(i - row) * lattice.cell_size,
+                  static_cast<float>(j - column) * lattice.cell_size, z, around);
+    }
+  }
+  return around;
+}
+
+void measure_smoothness(const GroundSurfaceParams& params, GroundSurfaceWorkspace& workspace,
+                        GroundSurface& surface) {
+  const auto sigma = static_cast<float>(params.smooth_sigma);
+  for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
+    const float variance = variance_across(sums_around(surface.cells, workspace.sums, slot));
+    const float ratio = variance / (sigma * sigma);
+    surface.ground[slot].smooth = 1.0F / (1.0F + ratio * ratio);
+  }
+}
+
+std::size_t coarse_cell(const SquareLattice& lattice, LatticeCell cell) {
+  return static_cast<std::size_t>((cell.row >> kRoughLevel) * (lattice.side >> kRoughLevel) +
+                                  (cell.column >> kRoughLevel));
+}
+
+// Mean weight of the cells in nine coarse cells, in place of the sum in each.
+void smooth_shares(int side, GroundSurfaceWorkspace& workspace) {
+  std::vector<float>& mean = workspace.mixed;
+  mean.assign(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0.0F);
+  for (int row = 0; row < side; ++row) {
+    for (int column = 0; column < side; ++column) {
+      float sum = 0.0F, count = 0.0F;
+      for (int i = std::max(row - 1, 0); i <= std::min(row + 1, side - 1); ++i) {
+        for (int j = std::max(column - 1, 0); j <= std::min(column + 1, side - 1); ++j) {
+          const float share = (i == row ? 1.0F : 0.5F) * (j == column ? 1.0F : 0.5F);
+          sum += share * workspace.share[static_cast<std::size_t>(i * side + j)];
+          count += share * workspace.count[static_cast<std::size_t>(i * side + j)];
+        }
+      }
+      if (count > 0.0F) mean[static_cast<std::size_t>(row * side + column)] = sum / count;
+    }
+  }
+  workspace.share.swap(mean);
+}
+
+// Rough cells between smooth ones are things that stand there; where all cells are rough, they are
+// the ground.
+void weigh_against_surroundings(const GroundSurfaceParams& params,
+                                GroundSurfaceWorkspace& workspace, GroundSurface& surface) {
+  constexpr float kLeast = 0.001F;  // keeps cells of no weight from dividing by zero
+  const SquareLattice& lattice = surface.lattice();
+  const int side = lattice.side >> kRoughLevel;
+  const auto size = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+  workspace.share.assign(size, 0.0F);
+  workspace.count.assign(size, 0.0F);
+  for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
+    const std::size_t at = coarse_cell(lattice, surface.cells.cell[slot]);
+    workspace.share[at] += surface.ground[slot].weight;
+    workspace.count[at] += 1.0F;
+  }
+  smooth_shares(side, workspace);
+  const auto rough = static_cast<float>(params.rough_weight);
+  for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
+    float& weight = surface.ground[slot].weight;
+    const float around = workspace.share[coarse_cell(lattice, surface.cells.cell[slot])];
+    weight = weight / (weight + rough * around + kLeast);
+  }
+}
+
+void set_weights(const GroundSurfaceParams& params, GroundSurfaceWorkspace& workspace,
+                 GroundSurface& surface) {
+  for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
+    const float part = workspace.part[slot];
+    surface.ground[slot].weight = part * part * surface.ground[slot].smooth;
+  }
+  weigh_against_surroundings(params, workspace, surface);
+}
+
+}  // namespace
+
+void measure_ground_cells(const GroundSurfaceParams& params, GroundSurfaceWorkspace& workspace,
+                          GroundSurface& surface) {
+  const CellPoints& cells = surface.cells;
+  surface.ground.resize(cells.occupied());
+  workspace.sums.resize(cells.occupied());
+  workspace.part.resize(cells.occupied());
+  for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
+    const Heights heights = heights_in(cells, slot, {});
+    const LowBand band = low_band_of(heights, static_cast<float>(params.low_band));
+    workspace.sums[slot] = low_sums_of(heights, band.lowest + static_cast<float>(params.low_part));
+    workspace.part[slot] = band.share;
+    surface.ground[slot].low = band.mean;
+  }
+  measure_smoothness(params, workspace, surface);
+  set_weights(params, workspace, surface);
+}
+
+void measure_above_level(const GroundSurfaceParams& params, int level,
+                         GroundSurfaceWorkspace& workspace, GroundSurface& surface) {
+  const CellPoints& cells = surface.cells;
+  const LevelView view = view_of_level(workspace, cells.lattice, level);
+  for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
+    const Heights heights = heights_in(cells, slot, view.at_cell(cells.cell[slot], level));
+    const LowBand band = low_band_of(heights, static_cast<float>(params.low_band));
+    workspace.part[slot] = band.share;
+    surface.ground[slot].low = heights.reference.height + band.mean;
+  }
+  set_weights(params, workspace, surface);
+}
+
+}  // namespace mrpt_terrain

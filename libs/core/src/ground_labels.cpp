@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/core/ground_labels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mrpt_terrain {
+namespace {
+
+constexpr float kGroundBand = 0.06F;                    // metres
+constexpr float kObjectLow = 0.1F, kObjectHigh = 0.5F;  // metres
+constexpr float kNeighbourShare = 0.3F;                 // of a point in a cell beside it
+// What is taken to be seen besides the points: a third of a point, and one of 2 cm spread.
+constexpr float kPriorPoints = 0.3F;
+constexpr float kPriorSigma = 0.02F;
+
+HeightCounts count_heights(const float* height, std::size_t points) {
+  HeightCounts counts;
+  for (std::size_t i = 0; i < points; ++i) {
+    const float h = height[i];
+    const float ground = std::abs(h) < kGroundBand ? 1.0F : 0.0F;
+    counts.ground += ground;
+    counts.squares += ground * h * h;
+    counts.object += h > kObjectLow && h < kObjectHigh ? 1.0F : 0.0F;
+  }
+  return counts;
+}
+
+HeightCounts counts_around(const CellPoints& cells, const std::vector<HeightCounts>& counts,
+                           std::size_t slot) {
+  const SquareLattice& lattice = cells.lattice;
+  const auto [row, column] = cells.cell[slot];
+  HeightCounts around;
+  for (std::int32_t i = std::max(row - 1, 0); i <= std::min(row + 1, lattice.side - 1); ++i) {
+    for (std::int32_t j = std::max(column - 1, 0); j <= std::min(column + 1, lattice.side - 1);
+         ++j) {
+      const std::int32_t other = cells.slot_of[static_cast<std::size_t>(i * lattice.side + j)];
+      if (other < 0) continue;
+      const HeightCounts& from = counts[static_cast<std::size_t>(other)];
+      const float share = i == row && j == column ? 1.0F : kNeighbourShare;
+      around.ground += share * from.ground;
+      around.squares += share * from.squares;
+      around.object += share * from.object;
+    }
+  }
+  return around;
+}
+
+// Height at which ground, normal about 0, and objects, even over their band, are equally dense.
+float threshold_of(const HeightCounts& counts, const GroundLabelParams& params, float most) {
+  if (counts.object == 0.0F || params.prior == 0.0) return most;
+  const float variance =
+      (counts.squares + kPriorSigma * kPriorSigma) / (counts.ground + kPriorPoints + 1.0F);
+  const float sigma = std::clamp(std::sqrt(variance), static_cast<float>(params.sigma_min),
+                                 static_cast<float>(params.sigma_max));
+  constexpr float kRootOfTwoPi = 2.5066283F;
+  const float ground = (counts.ground + kPriorPoints) / (sigma * kRootOfTwoPi);
+  const float object =
+      static_cast<float>(params.prior) * counts.object / (kObjectHigh - kObjectLow);
+  const float height = ground > object ? sigma * std::sqrt(2.0F * std::log(ground / object)) : 0.0F;
+  return std::min(most, std::max(height, static_cast<float>(params.least)));
+}
+
+}  // namespace
+
+void label_by_height(const GroundSurface& surface, const GroundLabelParams& params,
+                     GroundLabelWorkspace& workspace, std::vector<float>& threshold,
+                     std::vector<Support>& support) {
+  const CellPoints& cells = surface.cells;
+  workspace.counts.resize(cells.occupied());
+  threshold.resize(cells.occupied());
+  support.resize(surface.height.size());
+  const auto first_of = [&cells](std::size_t slot) {
+    return static_cast<std::size_t>(cells.first[slot]);
+  };
+  for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
+    workspace.counts[slot] =
+        count_heights(surface.height.data() + first_of(slot), first_of(slot + 1) - first_of(slot));
+  }
+  const auto below = -static_cast<float>(params.below);
+  for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
+    const float x = cells.lattice.centre(cells.cell[slot].row);
+    const float y = cells.lattice.centre(cells.cell[slot].column);
+    const float most = static_cast<float>(params.most) +
+                       static_cast<float>(params.growth) * std::sqrt(x * x + y * y);
+    threshold[slot] = threshold_of(counts_around(cells, workspace.counts, slot), params, most);
+    for (std::size_t i = first_of(slot); i < first_of(slot + 1); ++i) {
+      const float height = surface.height[i];
+      support[i] = height < below              ? Support::kBelow
+                   : height <= threshold[slot] ? Support::kGround
+                                               : Support::kAbove;
+    }
+  }
+}
+
+}  // namespace mrpt_terrain

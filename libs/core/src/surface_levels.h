@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+
+#include "mrpt_terrain/core/ground_surface.h"
+
+namespace mrpt_terrain {
+
+/// Heights on the centres of the cells of one level, linear between four of them.
+struct LevelView {
+  const float* height;
+  int side;         ///< cells
+  float cell_size;  ///< metres
+
+  /// Height and gradient at a place; beyond the outermost centres that of the nearest place.
+  struct Linear {
+    float height, gradient_x, gradient_y;
+  };
+  [[nodiscard]] Linear at(float x, float y) const {
+    const auto last = static_cast<float>(side - 1);
+    const float half = 0.5F * static_cast<float>(side) - 0.5F;
+    return at_node(std::min(std::max(x / cell_size + half, 0.0F), last),
+                   std::min(std::max(y / cell_size + half, 0.0F), last));
+  }
+  /// The same at the centre of a cell of the level that is `level` levels finer.
+  [[nodiscard]] Linear at_cell(LatticeCell cell, int level) const {
+    const auto last = static_cast<float>(side - 1);
+    const float share = 1.0F / static_cast<float>(1 << level);
+    const float u = (static_cast<float>(cell.row) + 0.5F) * share - 0.5F;
+    const float v = (static_cast<float>(cell.column) + 0.5F) * share - 0.5F;
+    return at_node(std::min(std::max(u, 0.0F), last), std::min(std::max(v, 0.0F), last));
+  }
+  /// The same in units of cells from the first centre, 0 to side - 1.
+  [[nodiscard]] Linear at_node(float u, float v) const {
+    const int i = std::min(static_cast<int>(u), side - 2);
+    const int j = std::min(static_cast<int>(v), side - 2);
+    const float a = u - static_cast<float>(i);
+    const float b = v - static_cast<float>(j);
+    const float* q = height + static_cast<std::ptrdiff_t>(i) * side + j;
+    const float low = q[0] + b * (q[1] - q[0]);
+    const float high = q[side] + b * (q[side + 1] - q[side]);
+    const float left = q[0] + a * (q[side] - q[0]);
+    const float right = q[1] + a * (q[side + 1] - q[1]);
+    return {low + a * (high - low), (high - low) / cell_size, (right - left) / cell_size};
+  }
+};
+
+/// Level `level` of the workspace. Requires that it has been made.
+[[nodiscard]] LevelView view_of_level(const GroundSurfaceWorkspace& workspace,
+                                      const SquareLattice& lattice, int level);
+
+/// Makes the coarsest level from the plane.
+void start_levels(const GroundSurface& surface, GroundSurfaceWorkspace& workspace);
+
+/// Makes a level from the next coarser one, which must exist, and the low heights of the cells.
+void refine_level(const GroundSurfaceParams& params, int level, GroundSurfaceWorkspace& workspace,
+                  const GroundSurface& surface);
+
+/// Moves a level, which must exist, towards the low heights of the cells.
+void correct_level(const GroundSurfaceParams& params, int level, GroundSurfaceWorkspace& workspace,
+                   const GroundSurface& surface);
+
+}  // namespace mrpt_terrain
