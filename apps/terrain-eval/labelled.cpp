@@ -46,8 +46,8 @@ void transform(const Eigen::Isometry3d& T_to_from, Points& points) {
 /// Scores scans one by one; keeps the memory of the last one.
 class Scorer {
  public:
-  Scorer(const LabelledOptions& options, AppParams params)
-      : options_(options), params_(std::move(params)) {}
+  Scorer(const LabelledOptions& options, const AppParams& params)
+      : options_(options), params_(params) {}
 
   eval::SupportScore score(const eval::LabelledFiles& files) {
     eval::LabelledScan scan = eval::read_labelled_scan(files, options_.classes);
@@ -119,9 +119,9 @@ std::vector<eval::LabelledFiles> find_all(const std::vector<std::string>& folder
   return all;
 }
 
-int score_all(const LabelledOptions& options, AppParams params, Messages& messages) {
+int score_all(const LabelledOptions& options, const AppParams& params, Messages& messages) {
   const std::vector<eval::LabelledFiles> files = find_all(options.folders);
-  Scorer scorer(options, std::move(params));
+  Scorer scorer(options, params);
   std::vector<NamedSupport> scores;
   NamedSupport pooled{"pooled", {}};
   for (const eval::LabelledFiles& file : files) {

@@ -180,6 +180,7 @@ std::vector<TextTable> support_tables(const std::vector<NamedSupport>& scores) {
 
 std::vector<TextTable> world_tables(const std::vector<NamedScore>& scores, bool details) {
   std::vector<NamedSupport> support;
+  support.reserve(scores.size());
   for (const NamedScore& entry : scores) support.push_back({entry.name, entry.score.support});
   std::vector<TextTable> tables{run_table(scores)};
   for (TextTable& table : support_tables(support)) tables.push_back(std::move(table));
