@@ -9,17 +9,21 @@
 namespace mrpt_terrain {
 namespace {
 
-bool stands_out(Support support) {
-  return support == Support::kAbove || support == Support::kBelow;
+// Whether a point is one of those that the cluster of its cell consists of: what stands out of the
+// ground, or in a hole the floor.
+bool belongs(Support support, GroundRule rule) {
+  return rule == GroundRule::kLow ? support == Support::kGround || support == Support::kBelow
+                                  : support == Support::kAbove;
 }
 
-// Slots of the points that clusters consist of.
 void find_cluster_slots(const FieldPoints& points, const PointSlots& point_slots,
-                        PointSlots& cluster_slots) {
+                        const GroundSegmentation& ground, PointSlots& cluster_slots) {
   cluster_slots.resize(point_slots.size());
   for (std::size_t i = 0; i < point_slots.size(); ++i) {
-    cluster_slots[i] =
-        stands_out(points.support[i]) ? point_slots[i] : point_slot_of(UnknownReason::kNone);
+    const std::int32_t slot = point_slots[i];
+    const bool member =
+        slot >= 0 && belongs(points.support[i], ground.rule[static_cast<std::size_t>(slot)]);
+    cluster_slots[i] = member ? slot : point_slot_of(UnknownReason::kNone);
   }
 }
 
@@ -41,11 +45,11 @@ void measure_extent(const ElevationGrid& grid, IndexRange slots, ClusterDescript
 }
 
 // Height index (3) with heights above the reference: a thing on falling ground keeps its sign.
-HeightIndex height_above_ground(const FieldCells& cells, IndexRange slots, double mean,
+HeightIndex height_above_ground(const GroundSegmentation& ground, IndexRange slots, double mean,
                                 double lowest, double highest) {
   HeightIndex result;
-  bool above = false;
-  for (const std::int32_t slot : slots) above |= cells.above[static_cast<std::size_t>(slot)] > 0;
+  const auto first = static_cast<std::size_t>(*slots.begin());
+  const bool above = ground.rule[first] != GroundRule::kLow;
   result.h_m = mean;
   result.h_d = above ? std::max(highest, 0.0) : std::max(-lowest, 0.0);
   result.h_f = above ? std::max(result.h_d, mean) : std::min(-result.h_d, mean);
@@ -65,9 +69,12 @@ void measure_things(const StageInput& stage, DescriptionWorkspace& workspace,
     if (cluster == kNoCluster) continue;
     ClusterSums& sums = workspace.cluster_sums[static_cast<std::size_t>(cluster)];
     sums.points.add(points.x[i], points.y[i], points.z[i]);
-    sums.height += field.height[i];
-    sums.low = std::min(sums.low, field.height[i]);
-    sums.high = std::max(sums.high, field.height[i]);
+    const auto cell = static_cast<std::size_t>(slot);
+    const bool hole = description.ground.rule[cell] == GroundRule::kLow;
+    const float height = hole ? points.z[i] - description.field.rim[cell] : field.height[i];
+    sums.height += height;
+    sums.low = std::min(sums.low, height);
+    sums.high = std::max(sums.high, height);
     sums.z_low = std::min(sums.z_low, points.z[i]);
     sums.z_high = std::max(sums.z_high, points.z[i]);
   }
@@ -82,7 +89,7 @@ void measure_things(const StageInput& stage, DescriptionWorkspace& workspace,
     thing.centroid = {moments.mean_x, moments.mean_y};
     thing.h_min = sums.z_low;
     thing.h_max = sums.z_high;
-    thing.height = height_above_ground(description.field, clusters.slots.row(k),
+    thing.height = height_above_ground(description.ground, clusters.slots.row(k),
                                        sums.height / std::max(moments.n, 1.0), sums.low, sums.high);
     measure_roughness(stage.params, moments, thing);
   }
@@ -128,10 +135,13 @@ void describe_field(const ScanView& scan, const DescriptionParams& params,
                            workspace.point_slots, workspace.field.points.height.data());
   measure_field_cells(workspace.field, description.grid, workspace.point_slots, description.field,
                       description.ground);
+  find_holes(workspace.field, description.grid, params.holes, workspace.holes, description.field,
+             description.ground);
   done(Stage::kGrid);
   find_field_clusters(description.grid, description.ground, description.field,
                       params.field_clusters, workspace.field_clusters, description.clusters);
-  find_cluster_slots(workspace.field.points, workspace.point_slots, workspace.cluster_slots);
+  find_cluster_slots(workspace.field.points, workspace.point_slots, description.ground,
+                     workspace.cluster_slots);
   done(Stage::kClusters);
   measure_things(stage, workspace, description);
   done(Stage::kHeightAndRoughness);

@@ -33,6 +33,7 @@ void reset(std::size_t n, FieldCells& cells) {
   for (auto* counts : {&cells.on, &cells.above, &cells.below}) counts->assign(n, 0);
   cells.low.assign(n, std::numeric_limits<float>::max());
   cells.high.assign(n, 0.0F);
+  cells.floor.assign(n, 0.0F);
 }
 
 void count_points(const FieldPoints& points, const PointSlots& point_slots, FieldCells& cells) {
@@ -43,6 +44,7 @@ void count_points(const FieldPoints& points, const PointSlots& point_slots, Fiel
     switch (points.support[i]) {
       case Support::kGround:
         ++cells.on[slot];
+        cells.floor[slot] += height;
         break;
       case Support::kAbove:
         ++cells.above[slot];
@@ -51,6 +53,7 @@ void count_points(const FieldPoints& points, const PointSlots& point_slots, Fiel
         break;
       case Support::kBelow:
         ++cells.below[slot];
+        cells.floor[slot] += height;
         break;
       case Support::kUnknown:
         break;
@@ -84,6 +87,8 @@ void measure_field_cells(const FieldWorkspace& workspace, const ElevationGrid& g
                         : cells.below[slot] > 0 ? GroundRule::kLow
                                                 : GroundRule::kGround;
     if (cells.above[slot] == 0) cells.low[slot] = 0.0F;
+    const auto low_points = static_cast<float>(cells.on[slot] + cells.below[slot]);
+    cells.floor[slot] = cells.ground[slot] + cells.floor[slot] / std::max(low_points, 1.0F);
   }
 }
 

@@ -16,6 +16,7 @@
 #include "mrpt_terrain/core/ground_labels.h"
 #include "mrpt_terrain/core/ground_surface.h"
 #include "mrpt_terrain/core/height_index.h"
+#include "mrpt_terrain/core/holes.h"
 #include "mrpt_terrain/core/label_stage.h"
 #include "mrpt_terrain/core/labels.h"
 #include "mrpt_terrain/core/roughness.h"
@@ -51,6 +52,7 @@ struct DescriptionParams {
   GridParams grid;
   GroundSurfaceParams ground_surface;
   GroundLabelParams ground_labels;
+  HoleParams holes;
   FieldClusterParams field_clusters;
   GroundParams ground;
   ClusterParams clusters;
@@ -65,6 +67,7 @@ struct DescriptionParams {
     visit(self.grid, "grid", "Extent and resolution of the elevation grid");
     visit(self.ground_surface, "ground_surface", "Field mode: local ground reference");
     visit(self.ground_labels, "ground_labels", "Field mode: points of the ground and above it");
+    visit(self.holes, "holes", "Field mode: potholes and ditches");
     visit(self.field_clusters, "field_clusters", "Field mode: clusters that are things");
     visit(self.ground, "ground", "Ground segmentation, eqs. (1) and (2)");
     visit(self.clusters, "clusters", "Grids clustering");
@@ -146,6 +149,7 @@ struct DescriptionWorkspace {
   ElevationGridWorkspace grid;
   GroundWorkspace ground;
   FieldWorkspace field;
+  HoleWorkspace holes;
   FieldClusterWorkspace field_clusters;
   ClusterWorkspace clusters;
   SlopeWorkspace slope;

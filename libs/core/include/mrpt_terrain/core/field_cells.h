@@ -28,6 +28,8 @@ struct FieldCells {
   std::vector<std::int32_t> below;  ///< points below it
   std::vector<float> low;           ///< lowest point above the ground; 0 without
   std::vector<float> high;          ///< highest of them; 0 without
+  std::vector<float> floor;  ///< mean height of the points on and below the ground, grid frame
+  std::vector<float> rim;    ///< height of the ground around the cell, grid frame
 
   [[nodiscard]] std::size_t size() const { return ground.size(); }
 };
