@@ -268,6 +268,7 @@ double width_of(const ElevationGrid& grid, const HoleWorkspace& workspace) {
 bool is_hole(const FieldWorkspace& field, const ElevationGrid& grid, const HoleParams& params,
              HoleWorkspace& workspace) {
   constexpr int kFewestRimPoints = 8;
+  constexpr double kRimBand = 0.3;  // share of the depth that the rim may lie low
   if (width_of(grid, workspace) > params.widest) return false;
   for (const std::int32_t slot : workspace.members)
     workspace.in_hole[static_cast<std::size_t>(slot)] = 1;
@@ -278,8 +279,9 @@ bool is_hole(const FieldWorkspace& field, const ElevationGrid& grid, const HoleP
   const RimPlane rim = fit_rim(workspace.points, &all, params.least_depth);
   if (rim.points < kFewestRimPoints) return false;
   const double depth = depth_below(rim, workspace);
-  if (depth < params.mean_depth || rim.sigma > params.rim_depth * depth) return false;
-  if (quarters_of_rim(workspace.points, rim, params.rim_depth * depth) < 3) return false;
+  if (depth < params.mean_depth) return false;
+  if (rim.sigma > std::max(params.rim_depth * depth, params.rim_sigma)) return false;
+  if (quarters_of_rim(workspace.points, rim, kRimBand * depth) < 3) return false;
   return has_walls(params, rim, depth, workspace.points);
 }
 

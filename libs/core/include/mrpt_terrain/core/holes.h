@@ -14,8 +14,9 @@ struct HoleParams {
   double least_depth = 0.03;  ///< metres below the rim from which a cell may belong to a hole
   double mean_depth = 0.035;  ///< metres: least depth of a hole
   int least_points = 6;       ///< fewest points in it
-  double rim_depth = 0.3;     ///< greatest spread of the rim about its plane, over the depth
-  double wall_share = 0.5;    ///< most points between rim and floor, over those on the floor
+  double rim_depth = 0.12;    ///< greatest spread of the rim about its plane, over the depth
+  double rim_sigma = 0.009;   ///< metres: or this, whichever is greater
+  double wall_share = 1.5;    ///< most points between rim and floor, over those on the floor
   double widest = 3.0;        ///< metres: greatest extent across
 
   template <class Self, class Visitor>
@@ -28,6 +29,8 @@ struct HoleParams {
           ParamInfo{"least_points", "", "", 1, 1000000, "holes of fewer points are left out"});
     visit(self.rim_depth, ParamInfo{"rim_depth", "", "", 0.0, 1.0,
                                     "greatest spread of the rim about its plane, over the depth"});
+    visit(self.rim_sigma,
+          ParamInfo{"rim_sigma", "", "m", 0.0, 1.0, "or this spread, whichever is greater"});
     visit(self.wall_share, ParamInfo{"wall_share", "", "", 0.0, 100.0,
                                      "most points between rim and floor, over those on the floor"});
     visit(self.widest,
@@ -52,9 +55,9 @@ struct HoleWorkspace {
   std::vector<float> height;            ///< per slot of the surface: low height above level 3
   std::vector<std::uint8_t> candidate;  ///< per slot of the grid
   std::vector<std::int32_t> members;    ///< slots of one hole
-  std::vector<std::uint8_t> in_hole;  ///< per slot of the grid: one of the members
-  std::vector<HolePoint> points;      ///< in and around the members
-  std::vector<float> depths;          ///< of the points in the hole
+  std::vector<std::uint8_t> in_hole;    ///< per slot of the grid: one of the members
+  std::vector<HolePoint> points;        ///< in and around the members
+  std::vector<float> depths;            ///< of the points in the hole
 };
 
 /// Looks for holes. The height of the rim is the mean of the ground within about 1.2 m, which the
