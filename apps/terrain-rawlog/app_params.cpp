@@ -6,7 +6,9 @@
 #include <sstream>
 #include <vector>
 
+#include "mrpt_terrain/params/ini.h"
 #include "mrpt_terrain/params/parameter_error.h"
+#include "mrpt_terrain/params/set.h"
 
 namespace {
 
@@ -55,4 +57,14 @@ void check_together(const AppParams& params, const std::string& source) {
     text += (text.empty() ? "" : "\n") + source + ": " + problem;
   }
   throw mrpt_terrain::params::ParameterError(text);
+}
+
+AppParams load_params(const std::string& config, const std::vector<std::string>& settings) {
+  AppParams result;
+  if (!config.empty()) mrpt_terrain::params::load_ini(config, result);
+  for (const std::string& setting : settings) {
+    mrpt_terrain::params::set(result, setting, "--set");
+  }
+  check_together(result, config.empty() ? "--set" : config);
+  return result;
 }

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mrpt_terrain/core/describe.h"
 #include "mrpt_terrain/core/ground_plane.h"
@@ -27,3 +28,9 @@ struct AppParams {
 /// greatest. Throws ParameterError with a line per problem.
 /// \param source beginning of the messages
 void check_together(const AppParams& params, const std::string& source);
+
+/// Defaults, then a file, then single settings; checked together.
+/// \param config .ini file; empty: none
+/// \param settings "section.key=value"
+[[nodiscard]] AppParams load_params(const std::string& config,
+                                    const std::vector<std::string>& settings);

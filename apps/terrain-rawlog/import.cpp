@@ -3,7 +3,6 @@
 #include "mrpt_terrain/io/import.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <stdexcept>
 
@@ -17,13 +16,6 @@
 namespace {
 
 using namespace mrpt_terrain;
-
-std::string lower_extension(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 // A folder is KITTI's; files say it by their name.
 std::string format_of(const ImportCommandOptions& options) {

@@ -6,12 +6,14 @@
 #include <mrpt/io/lazy_load_path.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
 
+#include "mrpt_terrain/io/kitti_scan.h"
 #include "mrpt_terrain/params/data_files.h"
 #include "mrpt_terrain/view/text.h"
 
@@ -46,6 +48,13 @@ std::string pose_text(const CPose3D& pose) {
   return text;
 }
 
+std::string lower_extension(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
 void refuse_pipe(const std::string& file) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(file, ignored);
@@ -54,8 +63,10 @@ void refuse_pipe(const std::string& file) {
   }
 }
 
-std::unique_ptr<mrpt_terrain::io::ObservationReader> open_input(const std::string& file) {
+std::unique_ptr<mrpt_terrain::io::ObservationReader> open_input(const std::string& file,
+                                                                bool scan_file) {
   refuse_pipe(file);
+  if (scan_file) return mrpt_terrain::io::open_kitti_scan(file);
   return mrpt_terrain::io::open_observations(file);
 }
 

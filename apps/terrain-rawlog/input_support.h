@@ -17,14 +17,18 @@
 /// The same form, for messages.
 [[nodiscard]] std::string pose_text(const mrpt::poses::CPose3D& pose);
 
+/// Extension of a file's name in lower case, such as ".ply".
+[[nodiscard]] std::string lower_extension(const std::string& file);
+
 /// Refuses files that cannot be read more than once, instead of waiting for them. Throws ReadError
 /// for pipes and devices.
 void refuse_pipe(const std::string& file);
 
-/// `io::open_observations` for files that can be read more than once, as the programs do: pipes and
-/// devices are refused with a ReadError instead of waited for.
+/// `io::open_observations`, or `io::open_kitti_scan` for files of one scan, for files that can be
+/// read more than once, as the programs do: pipes and devices are refused with a ReadError instead
+/// of waited for.
 [[nodiscard]] std::unique_ptr<mrpt_terrain::io::ObservationReader> open_input(
-    const std::string& file);
+    const std::string& file, bool scan_file = false);
 
 /// Where rawlog tools keep the externally stored data of `drive.rawlog`: `drive_Images` beside it,
 /// else `Images` beside it. (`CRawlog::detectImagesDirectory` of MRPT 2.5.8 loses the separator

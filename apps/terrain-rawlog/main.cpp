@@ -85,6 +85,25 @@ void add_process(CLI::App& app, ProcessOptions& options) {
   add_verbosity(command, options.verbosity);
 }
 
+void add_label(CLI::App& app, LabelOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("label", "Write a label per point, in SemanticKITTI's form");
+  command
+      .add_option("inputs", options.input.inputs,
+                  "KITTI / SemanticKITTI folders and .bin files; or .rawlog or .simplemap files")
+      ->required()
+      ->type_name("IN...");
+  command
+      .add_option("-c,--config", options.config, "Parameters (.ini); see --print-default-config")
+      ->type_name("FILE");
+  add_settings(command, options.settings, "One parameter, after the file; may be repeated");
+  command.add_option("-o,--output-dir", options.output_dir, "Folder for the label files")
+      ->type_name("DIR")
+      ->capture_default_str();
+  add_reading(command, options.input);
+  add_verbosity(command, options.verbosity);
+}
+
 void add_map(CLI::App& app, MapOptions& options) {
   CLI::App& command =
       *app.add_subcommand("map", "Build one terrain map out of rawlogs or simple maps");
@@ -168,6 +187,7 @@ void add_import(CLI::App& app, ImportCommandOptions& options) {
 /// The options of all commands.
 struct Commands {
   ProcessOptions process;
+  LabelOptions label;
   MapOptions map;
   ExportOptions export_map;
   InfoOptions info;
@@ -175,6 +195,7 @@ struct Commands {
 
   explicit Commands(CLI::App& app) {
     add_process(app, process);
+    add_label(app, label);
     add_map(app, map);
     add_export(app, export_map);
     add_info(app, info);
@@ -183,6 +204,7 @@ struct Commands {
   /// Runs the one that was asked for, if one was; returns its exit code.
   [[nodiscard]] std::optional<int> run(const CLI::App& app) const {
     if (app.got_subcommand("process")) return run_process(process);
+    if (app.got_subcommand("label")) return run_label(label);
     if (app.got_subcommand("map")) return run_map(map);
     if (app.got_subcommand("export")) return run_export(export_map);
     if (app.got_subcommand("info")) return run_info(info);

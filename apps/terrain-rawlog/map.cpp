@@ -46,7 +46,7 @@ bool may_insert(const view::ScanRecord& record, MapRun& run) {
   }
   const std::string& poses = run.reading.options.poses;
   run.reading.pass_over(
-      "no pose", place_of(record),
+      "no pose", place_of(record, run.reading.options),
       (poses.empty() ? "there is no pose for its time " : poses + " has no pose for its time ") +
           view::fixed(record.stamp, 6) + " s; not inserted");
   return false;
@@ -58,7 +58,8 @@ void insert(view::ScanRecord& record, MapRun& run) {
   if (!may_insert(record, run)) return;
   const io::Scan& scan = run.reading.pipeline.scan;
   if (!run.map.insert_scan(scan, scan.T_map_robot.value_or(mrpt::poses::CPose3D()))) {
-    run.reading.pass_over("no finite point", place_of(record), "none of its points is finite");
+    run.reading.pass_over("no finite point", place_of(record, run.reading.options),
+                          "none of its points is finite");
     return;
   }
   const double ms = 1e3 * std::chrono::duration<double>(Clock::now() - start).count();
@@ -67,7 +68,8 @@ void insert(view::ScanRecord& record, MapRun& run) {
   record.milliseconds.total = ms + record.milliseconds.io;
   record.counts = view::count(run.map.snapshot()->description);
   view::add_scan(run.reading.summary, record);
-  run.reading.messages.debug(place_of(record) + ": inserted in " + view::fixed(ms, 1) + " ms\n");
+  run.reading.messages.debug(place_of(record, run.reading.options) + ": inserted in " +
+                             view::fixed(ms, 1) + " ms\n");
   warn_about(record, kWords, run.reading);
 }
 

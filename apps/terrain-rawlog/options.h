@@ -17,9 +17,10 @@ struct Selection {
   std::size_t only_first_n = 0;                                    ///< scans of the run; 0: all
 };
 
-/// What `process` and `map` read, and how observations become scans.
+/// What `process`, `map` and `label` read, and how observations become scans.
 struct InputOptions {
   std::vector<std::string> inputs;
+  bool scan_files = false;  ///< they are files of one scan each (KITTI's .bin), not recordings
   Selection selection;
   std::string poses;          ///< TUM file; empty: what the rawlog holds
   std::string sensor_pose;    ///< replaces the one of the observations; empty: keep
@@ -34,6 +35,14 @@ struct ProcessOptions {
   std::string output_dir = "out";
   std::size_t every = 0;  ///< views of every n-th scan; 0: first, worst and last
   std::size_t table_rows = 15;
+  Verbosity verbosity = Verbosity::kInfo;
+};
+
+struct LabelOptions {
+  InputOptions input;
+  std::string config;                 ///< .ini file; empty: defaults
+  std::vector<std::string> settings;  ///< "section.key=value", after the file
+  std::string output_dir = "out/labels";
   Verbosity verbosity = Verbosity::kInfo;
 };
 
@@ -71,6 +80,7 @@ struct ImportCommandOptions {
 
 /// The commands. Each returns an ExitCode and prints its own messages.
 int run_process(const ProcessOptions& options);
+int run_label(const LabelOptions& options);
 int run_map(const MapOptions& options);
 int run_export(const ExportOptions& options);
 int run_info(const InfoOptions& options);

@@ -7,8 +7,6 @@
 
 #include "app_params.h"
 #include "exit_code.h"
-#include "mrpt_terrain/params/ini.h"
-#include "mrpt_terrain/params/set.h"
 #include "mrpt_terrain/view/run_summary.h"
 #include "mrpt_terrain/view/tables.h"
 #include "mrpt_terrain/view/text.h"
@@ -46,14 +44,6 @@ struct Run {
     describer.params = params.description;
   }
 };
-
-AppParams load_params(const ProcessOptions& options) {
-  AppParams result;
-  if (!options.config.empty()) params::load_ini(options.config, result);
-  for (const std::string& setting : options.settings) params::set(result, setting, "--set");
-  check_together(result, options.config.empty() ? "--set" : options.config);
-  return result;
-}
 
 std::string scan_title(const view::ScanRecord& record) {
   std::string title = "scan " + std::to_string(record.index) + ": " + view::base_name(record.file) +
@@ -155,7 +145,7 @@ int run_process(const ProcessOptions& options) {
   Messages messages(options.verbosity);
   AppParams params;
   const auto prepare = [&] {
-    params = load_params(options);
+    params = load_params(options.config, options.settings);
     check_options(options.input);
     if (options.output_dir.empty()) throw std::invalid_argument("--output-dir: needs a name");
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `process` and `map` do with their inputs before there is a scan to work on.
+// What `process`, `map` and `label` do with their inputs before there is a scan to work on.
 #include "scan_reading.h"
 
 #include <mrpt/core/bits_math.h>
@@ -27,6 +27,7 @@ double milliseconds_since(Clock::time_point start) {
 }
 
 io::Trajectory trajectory_for(const std::string& file, const InputOptions& options) {
+  if (options.scan_files) return {};
   if (!options.poses.empty()) return io::load_tum(options.poses);
   io::PoseSource source = io::PoseSource::kNone;
   return io::read_trajectory(file, source);
@@ -61,6 +62,11 @@ std::string kind_of(const mrpt::obs::CObservation& observation, const io::Conver
          "'";
 }
 
+bool is_wanted_empty(const io::Conversion& conversion, const ScanReading& reading) {
+  return reading.empty_scans && conversion.status == io::ConversionStatus::kNoPoints &&
+         reading.pipeline.sensor_points.source_size != 0;
+}
+
 // Observations that never have points are part of most rawlogs; the others should have been used.
 void skip(const mrpt::obs::CObservation& observation, const std::string& place,
           const io::Conversion& conversion, ScanReading& reading) {
@@ -68,7 +74,10 @@ void skip(const mrpt::obs::CObservation& observation, const std::string& place,
     ++reading.no_geometry[conversion.reason];
     return;
   }
-  view::add(reading.summary.left_out, left_out(reading.pipeline.sensor_points.counts));
+  // The command counts the returns of scans that it gets.
+  if (!is_wanted_empty(conversion, reading)) {
+    view::add(reading.summary.left_out, left_out(reading.pipeline.sensor_points.counts));
+  }
   reading.pass_over(kind_of(observation, conversion), place, conversion.reason);
 }
 
@@ -80,12 +89,11 @@ void take_observation(const io::ReadObservation& read, view::ScanRecord& record,
     return;
   }
   const Clock::time_point start = Clock::now();
-  const std::string place = place_of(record);
+  const std::string place = place_of(record, reading.options);
   const io::Conversion conversion = convert(observation, reading.pipeline);
-  if (conversion.status != io::ConversionStatus::kOk) {
-    skip(observation, place, conversion, reading);
-    return;
-  }
+  const bool usable = conversion.status == io::ConversionStatus::kOk;
+  if (!usable) skip(observation, place, conversion, reading);
+  if (!usable && !is_wanted_empty(conversion, reading)) return;
   if (read.T_map_robot) {
     reading.pipeline.trajectory = io::Trajectory();
     reading.pipeline.trajectory.add(reading.pipeline.sensor_points.stamp, *read.T_map_robot);
@@ -93,7 +101,7 @@ void take_observation(const io::ReadObservation& read, view::ScanRecord& record,
   record.index = reading.summary.scans_processed;
   record.sensor_label = observation.sensorLabel;
   record.milliseconds.io += milliseconds_since(start);
-  find_ground(place, reading);
+  if (usable) find_ground(place, reading);
   handle(record);
 }
 
@@ -132,7 +140,7 @@ void read_file(std::size_t file_number, ScanReading& reading, const ScanHandler&
   std::unique_ptr<io::ObservationReader> reader;
   try {
     set_externals_dir(reading.options.externals_dir, file);
-    reader = open_input(file);
+    reader = open_input(file, reading.options.scan_files);
     try {
       reading.pipeline.trajectory = trajectory_for(file, reading.options);
     } catch (const io::ReadError&) {
@@ -202,7 +210,7 @@ bool any_readable(const InputOptions& options, Messages& messages) {
   std::vector<std::string> problems;
   for (const std::string& file : options.inputs) {
     try {
-      (void)open_input(file);
+      (void)open_input(file, options.scan_files);
       return true;
     } catch (const io::ReadError& error) {
       problems.emplace_back(error.what());
@@ -218,13 +226,14 @@ void read_inputs(ScanReading& reading, const ScanHandler& handle) {
   }
 }
 
-std::string place_of(const view::ScanRecord& record) {
+std::string place_of(const view::ScanRecord& record, const InputOptions& options) {
+  if (options.scan_files) return record.file;
   return record.file + ": entry " + std::to_string(record.entry);
 }
 
 void warn_about(const view::ScanRecord& record, const ScanWords& words, ScanReading& reading) {
   const view::DescriptionCounts& counts = record.counts;
-  const std::string place = place_of(record);
+  const std::string place = place_of(record, reading.options);
   if (counts.observed_cells == 0) {
     reading.pass_over("no points in the map", place,
                       "none of its " + view::grouped(record.counts.points) +

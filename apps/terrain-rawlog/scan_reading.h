@@ -28,6 +28,8 @@ struct ScanReading {
   bool ground_known = false;                       ///< `--find-ground` has found it
   std::size_t entries = 0;                         ///< that were read, asked for or not
   std::map<std::string, std::size_t> no_geometry;  ///< observations that never have points
+  /// Hand on scans of which every return was left out, too; they are told all the same.
+  bool empty_scans = false;
   int exit_code = kExitOk;
 
   /// Needs options that `check_options` has passed. Throws std::runtime_error if the project's
@@ -59,8 +61,9 @@ void check_options(const InputOptions& options);
 /// before it were handed on.
 void read_inputs(ScanReading& reading, const ScanHandler& handle);
 
-/// "FILE: entry N", the beginning of messages.
-[[nodiscard]] std::string place_of(const mrpt_terrain::view::ScanRecord& record);
+/// "FILE: entry N", or "FILE" where that is one scan: the beginning of messages.
+[[nodiscard]] std::string place_of(const mrpt_terrain::view::ScanRecord& record,
+                                   const InputOptions& options);
 
 /// What messages about scans say differently for each command.
 struct ScanWords {

@@ -9,7 +9,8 @@ TEST(CommandLine, HelpNamesCommandsAndExitCodes) {
   const ProgramResult result = terrain_rawlog(fresh_folder(), {"--help"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.err, "");
-  for (const std::string part : {"process", "info", "import", "Exit codes: 0 all well; 2 "}) {
+  for (const std::string part :
+       {"process", "label", "info", "import", "Exit codes: 0 all well; 2 "}) {
     EXPECT_TRUE(contains(result.out, part)) << part;
   }
   const ProgramResult process = terrain_rawlog(fresh_folder(), {"process", "--help"});
@@ -79,6 +80,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         WrongUse{"UnknownCommand", {"proces", "FILE"}, "proces"},
         WrongUse{"NoInput", {"process"}, "inputs is required"},
+        WrongUse{"NoInputOfLabel", {"label"}, "inputs is required"},
+        WrongUse{"NoFolderOfLabel", {"label", "FILE", "-o", ""}, "error: --output-dir: needs"},
+        WrongUse{"ViewsOfLabel", {"label", "FILE", "-o", "DIR", "--every", "2"}, "--every"},
         WrongUse{"NoInputOfInfo", {"info"}, "inputs is required"},
         WrongUse{"NoOutputOfImport", {"import", "FILE"}, "--output is required"},
         wrong("UnknownOption", {"--evry", "3"}, "--evry"),

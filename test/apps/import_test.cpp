@@ -7,14 +7,6 @@ namespace {
 
 using std::filesystem::exists;
 
-std::string kitti_bytes(const PointList& points) {
-  std::vector<float> values;
-  for (const auto& point : points) {
-    values.insert(values.end(), {point[0], point[1], point[2], 0.5F});
-  }
-  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
-}
-
 /// Three scans seen by a sensor 0.8 m above the ground, with poses and times.
 std::string kitti_folder(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder / "set" / "velodyne");

@@ -48,6 +48,15 @@ inline Cloud cloud_of(const PointList& points, double stamp = 1000.0) {
   return cloud;
 }
 
+/// The points of a KITTI scan.
+inline std::string kitti_bytes(const PointList& points) {
+  std::vector<float> values;
+  for (const auto& point : points) {
+    values.insert(values.end(), {point[0], point[1], point[2], 0.5F});
+  }
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
+}
+
 /// The k-th scan of a drive: ten scans a second, the block a centimetre higher each time.
 inline Cloud drive_scan(int k) {
   return cloud_of(ground_with_block(0.3F + 0.01F * static_cast<float>(k)), 1000.0 + 0.1 * k);

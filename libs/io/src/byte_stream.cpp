@@ -35,7 +35,7 @@ std::unique_ptr<std::FILE, CloseFile> open_file(const std::string& file) {
 }  // namespace
 
 struct ByteStream::Impl {
-  explicit Impl(const std::string& name) : file(name), handle(open_file(name)) {
+  Impl(const std::string& name, Compression compression) : file(name), handle(open_file(name)) {
     std::error_code error;
     const std::uintmax_t bytes = std::filesystem::file_size(name, error);
     if (!error) file_size = static_cast<double>(bytes);
@@ -43,7 +43,8 @@ struct ByteStream::Impl {
     if (source_end == 0) {
       throw ReadError(name + ": " + (failure.empty() ? std::string("is empty") : failure));
     }
-    gzip = source_end >= 2 && source[0] == 0x1F && source[1] == 0x8B;
+    gzip = compression == Compression::kByContent && source_end >= 2 && source[0] == 0x1F &&
+           source[1] == 0x8B;
     constexpr int kGzipOnly = 15 + 16;
     if (gzip && inflateInit2(&inflater, kGzipOnly) != Z_OK) throw std::bad_alloc();
   }
@@ -123,7 +124,8 @@ struct ByteStream::Impl {
   std::uint64_t position = 0;
 };
 
-ByteStream::ByteStream(const std::string& file) : impl_(std::make_unique<Impl>(file)) {}
+ByteStream::ByteStream(const std::string& file, Compression compression)
+    : impl_(std::make_unique<Impl>(file, compression)) {}
 ByteStream::~ByteStream() = default;
 
 std::size_t ByteStream::peek(std::size_t n, const std::uint8_t*& data) {

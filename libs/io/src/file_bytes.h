@@ -15,9 +15,10 @@
 
 namespace mrpt_terrain::io {
 
-/// Whole content of a (gzip or plain) file. Throws ReadError.
-inline std::vector<std::uint8_t> read_bytes(const std::string& file) {
-  ByteStream stream(file);
+/// Whole content of a file. Throws ReadError.
+inline std::vector<std::uint8_t> read_bytes(const std::string& file,
+                                            Compression compression = Compression::kByContent) {
+  ByteStream stream(file, compression);
   std::vector<std::uint8_t> bytes;
   const std::uint8_t* data = nullptr;
   while (const std::size_t count = stream.peek(1, data)) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
 
 #include "file_bytes.h"
 #include "mrpt_terrain/io/import_writer.h"
+#include "mrpt_terrain/io/kitti_scan.h"
 #include "mrpt_terrain/io/label_file.h"
 #include "mrpt_terrain/io/trajectory.h"
 
@@ -26,48 +26,6 @@ struct RowList {
   std::string file;
   std::vector<Row> rows;
 };
-
-std::vector<fs::path> find_scans(const std::string& folder) {
-  std::error_code error;
-  if (!fs::is_directory(folder, error)) throw ReadError(folder + ": is no folder");
-  fs::path scans = fs::path(folder) / "velodyne";
-  if (!fs::is_directory(scans, error)) scans = folder;
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(scans)) {
-    if (entry.path().extension() == ".bin") files.push_back(entry.path());
-  }
-  if (files.empty()) {
-    throw ReadError(folder +
-                    ": is no KITTI folder: there are no .bin files in it or its velodyne/");
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-FileCloud read_kitti_scan(const std::string& file) {
-  const std::vector<std::uint8_t> bytes = read_bytes(file);
-  constexpr std::size_t kPoint = 16;
-  if (bytes.size() % kPoint != 0) {
-    fail_at_byte(file, bytes.size() - bytes.size() % kPoint,
-                 "cut off: " + std::to_string(bytes.size()) +
-                     " bytes are no whole number of points (x, y, z, intensity as float32)");
-  }
-  FileCloud cloud;
-  const std::size_t count = bytes.size() / kPoint;
-  cloud.points.resize(count);
-  cloud.intensity.resize(count);
-  const ScalarType type{ScalarType::Kind::kFloat, 4};
-  const auto value = [&](std::size_t k, std::size_t column) {
-    return static_cast<float>(load_scalar(bytes.data() + kPoint * k + 4 * column, type));
-  };
-  for (std::size_t k = 0; k < count; ++k) {
-    cloud.points.x[k] = value(k, 0);
-    cloud.points.y[k] = value(k, 1);
-    cloud.points.z[k] = value(k, 2);
-    cloud.intensity[k] = value(k, 3);
-  }
-  return cloud;
-}
 
 /// Calls `take(line number, words)` for the lines of a text file that are not blank.
 template <class Take>
@@ -142,7 +100,7 @@ RowList read_tum_poses(const std::string& file, const CPose3D& T_robot_sensor) {
 class KittiFolder {
  public:
   KittiFolder(const std::string& folder, const CPose3D& T_robot_sensor)
-      : folder_(folder), scans_(find_scans(folder)) {
+      : folder_(folder), scans_(find_kitti_scans(folder)) {
     if (exists("poses.tum")) {
       poses_ = read_tum_poses(path("poses.tum"), T_robot_sensor);
     } else if (exists("poses.txt")) {
@@ -154,9 +112,9 @@ class KittiFolder {
   [[nodiscard]] std::size_t size() const { return scans_.size(); }
 
   [[nodiscard]] FileCloud cloud(std::size_t scan) const {
-    FileCloud cloud = read_kitti_scan(scans_[scan].string());
+    FileCloud cloud = read_kitti_scan(scans_[scan]);
     if (exists("labels")) {
-      const fs::path name = scans_[scan].stem().string() + ".label";
+      const fs::path name = fs::path(scans_[scan]).stem().string() + ".label";
       cloud.labels =
           read_labels((fs::path(folder_) / "labels" / name).string(), cloud.points.size());
     }
@@ -183,17 +141,16 @@ class KittiFolder {
   [[nodiscard]] const Row& row(const RowList& list, std::size_t scan) const {
     if (list.rows.size() == scans_.size()) return list.rows[scan];
     std::size_t number = 0;
-    const std::string stem = scans_[scan].stem().string();
+    const std::string stem = fs::path(scans_[scan]).stem().string();
     if (!parse_number(stem, number) || number >= list.rows.size()) {
       throw ReadError(list.file + ": holds " + std::to_string(list.rows.size()) + " rows for " +
-                      std::to_string(scans_.size()) + " scans, and none for " +
-                      scans_[scan].string());
+                      std::to_string(scans_.size()) + " scans, and none for " + scans_[scan]);
     }
     return list.rows[number];
   }
 
   std::string folder_;
-  std::vector<fs::path> scans_;
+  std::vector<std::string> scans_;
   std::optional<RowList> poses_, times_;
 };
 

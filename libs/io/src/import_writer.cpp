@@ -2,7 +2,6 @@
 #include "mrpt_terrain/io/import_writer.h"
 
 #include <mrpt/core/Clock.h>
-#include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 
@@ -12,6 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "cloud_map.h"
 #include "mrpt_terrain/files/whole_file.h"
 #include "mrpt_terrain/io/label_file.h"
 #include "mrpt_terrain/io/rawlog_writer.h"
@@ -24,18 +24,6 @@ namespace fs = std::filesystem;
 
 std::string without_extension(const std::string& file) {
   return fs::path(file).replace_extension().string();
-}
-
-mrpt::maps::CPointsMapXYZI::Ptr to_map(const FileCloud& cloud) {
-  auto map = mrpt::maps::CPointsMapXYZI::Create();
-  const Points& points = cloud.points;
-  map->resize(points.size());
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const float intensity = cloud.intensity.empty() ? 0.0f : cloud.intensity[k];
-    map->setPointFast(k, points.x[k], points.y[k], points.z[k]);
-    map->setPointColor_fast(k, intensity, intensity, intensity);
-  }
-  return map;
 }
 
 /// Listed first, since a folder must not change while it is walked through.

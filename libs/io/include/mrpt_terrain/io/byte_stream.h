@@ -8,6 +8,12 @@
 
 namespace mrpt_terrain::io {
 
+/// Whether a file may be compressed.
+enum class Compression : std::uint8_t {
+  kByContent,  ///< a file that begins as gzip files do is one
+  kNone,       ///< it is not, however it begins
+};
+
 /// Reads the bytes of a file front to back, gzip decompressed, in constant memory. Unlike
 /// `gzread` it tells a proper end from a cut-off or damaged one.
 class ByteStream {
@@ -15,9 +21,8 @@ class ByteStream {
   /// Most bytes that `peek` can show ahead.
   static constexpr std::size_t kMaxPeek = 4096;
 
-  /// Opens a file; gzip is recognised by its first bytes. Throws ReadError if the file is missing,
-  /// a folder, empty or unreadable.
-  explicit ByteStream(const std::string& file);
+  /// Opens a file. Throws ReadError if it is missing, a folder, empty or unreadable.
+  explicit ByteStream(const std::string& file, Compression compression = Compression::kByContent);
   ~ByteStream();
   ByteStream(const ByteStream&) = delete;
   ByteStream& operator=(const ByteStream&) = delete;
