@@ -98,6 +98,10 @@ void measure_things(const StageInput& stage, DescriptionWorkspace& workspace,
 void label_field_cells(const Description& description, const std::vector<TerrainClass>& class_of,
                        CellLabels& result) {
   label_cells(description.ground, description.clusters, class_of, result);
+  for (std::size_t slot = 0; slot < result.support.size(); ++slot) {
+    const bool floor = description.ground.rule[slot] == GroundRule::kLow;
+    if (floor || description.field.deck[slot] >= 0) result.support[slot] = Support::kGround;
+  }
 }
 
 void label_field_points(const DescriptionWorkspace& workspace, const Description& description,
@@ -113,6 +117,9 @@ void label_field_points(const DescriptionWorkspace& workspace, const Description
     const std::int32_t slot = workspace.cluster_slots[i];
     result.cluster[i] =
         slot < 0 ? kNoCluster : description.clusters.cluster_of[static_cast<std::size_t>(slot)];
+    if (slot >= 0 && result.support[i] == Support::kAbove &&
+        description.field.deck[static_cast<std::size_t>(slot)] >= 0)
+      result.support[i] = Support::kGround;
     result.terrain_class[i] = result.cluster[i] == kNoCluster
                                   ? TerrainClass::kNone
                                   : workspace.class_of[static_cast<std::size_t>(result.cluster[i])];
@@ -137,6 +144,8 @@ void describe_field(const ScanView& scan, const DescriptionParams& params,
                       description.ground);
   find_holes(workspace.field, description.grid, params.holes, workspace.holes, description.field,
              description.ground);
+  find_decks(description.grid, description.ground, params.decks, workspace.decks,
+             description.field);
   done(Stage::kGrid);
   find_field_clusters(description.grid, description.ground, description.field,
                       params.field_clusters, workspace.field_clusters, description.clusters);

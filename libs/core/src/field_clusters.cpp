@@ -36,7 +36,7 @@ struct Linker {
   float step;
 
   [[nodiscard]] bool compatible(std::size_t a, std::size_t b) const {
-    if (ground.rule[a] != ground.rule[b]) return false;
+    if (ground.rule[a] != ground.rule[b] || cells.deck[a] != cells.deck[b]) return false;
     const float gap = std::max(cells.low[a], cells.low[b]) - std::min(cells.high[a], cells.high[b]);
     return gap <= step;
   }

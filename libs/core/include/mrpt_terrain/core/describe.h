@@ -9,6 +9,7 @@
 #include "mrpt_terrain/core/beam_slope.h"
 #include "mrpt_terrain/core/classes.h"
 #include "mrpt_terrain/core/clusters.h"
+#include "mrpt_terrain/core/decks.h"
 #include "mrpt_terrain/core/elevation_grid.h"
 #include "mrpt_terrain/core/field_cells.h"
 #include "mrpt_terrain/core/field_clusters.h"
@@ -53,6 +54,7 @@ struct DescriptionParams {
   GroundSurfaceParams ground_surface;
   GroundLabelParams ground_labels;
   HoleParams holes;
+  DeckParams decks;
   FieldClusterParams field_clusters;
   GroundParams ground;
   ClusterParams clusters;
@@ -68,6 +70,7 @@ struct DescriptionParams {
     visit(self.ground_surface, "ground_surface", "Field mode: local ground reference");
     visit(self.ground_labels, "ground_labels", "Field mode: points of the ground and above it");
     visit(self.holes, "holes", "Field mode: potholes and ditches");
+    visit(self.decks, "decks", "Field mode: raised surfaces to drive on");
     visit(self.field_clusters, "field_clusters", "Field mode: clusters that are things");
     visit(self.ground, "ground", "Ground segmentation, eqs. (1) and (2)");
     visit(self.clusters, "clusters", "Grids clustering");
@@ -150,6 +153,7 @@ struct DescriptionWorkspace {
   GroundWorkspace ground;
   FieldWorkspace field;
   HoleWorkspace holes;
+  DeckWorkspace decks;
   FieldClusterWorkspace field_clusters;
   ClusterWorkspace clusters;
   SlopeWorkspace slope;
