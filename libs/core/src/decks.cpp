@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mrpt_terrain/core/moments.h"
+
 namespace mrpt_terrain {
 namespace {
 
@@ -105,18 +107,60 @@ DeckSize size_of(const DeckSearch& search, const DeckWorkspace& workspace) {
   return size;
 }
 
-bool within_reach(const DeckSearch& search, const DeckParams& params, std::int32_t deck,
-                  const DeckWorkspace& workspace) {
-  if (workspace.members.size() < kFewestCells) return false;
+// RMS of the cells' heights about the plane of least squares through them, metres; a plane that is
+// steeper than permitted fits nothing.
+double scatter_about_plane(const DeckSearch& search, const DeckParams& params,
+                           const DeckWorkspace& workspace) {
+  constexpr double kNoPlane = 1e9;
+  MomentSums sums;
+  for (const std::int32_t member : workspace.members) {
+    const auto slot = static_cast<std::size_t>(member);
+    const Position2 at =
+        search.grid.geometry.centre_of(search.grid.geometry.index_of(search.grid.cell[slot]));
+    sums.add(at.x, at.y, height_of(search.cells, slot));
+  }
+  const Moments m = moments_from(sums);
+  const double determinant = m.m_xx * m.m_yy - m.m_xy * m.m_xy;
+  if (determinant <= 1e-6 * m.m_xx * m.m_yy) return kNoPlane;
+  const double a = (m.m_xz * m.m_yy - m.m_yz * m.m_xy) / determinant;
+  const double b = (m.m_yz * m.m_xx - m.m_xz * m.m_xy) / determinant;
+  if (std::hypot(a, b) > std::tan(params.max_slope)) return kNoPlane;
+  return std::sqrt(std::max(0.0, m.m_zz - a * m.m_xz - b * m.m_yz) / m.n);
+}
+
+enum class DeckKind { kNone, kRamp, kLevel };
+
+DeckKind kind_of(const DeckSearch& search, const DeckParams& params, std::int32_t deck,
+                 const DeckWorkspace& workspace) {
+  if (workspace.members.size() < kFewestCells) return DeckKind::kNone;
   const DeckSize size = size_of(search, workspace);
   const double cell = search.grid.geometry.cell_size();
   const double area = static_cast<double>(workspace.members.size()) * cell * cell;
-  const bool ramp = size.lowest <= params.foot && size.highest - size.lowest >= params.least_rise;
+  const double rise = size.highest - size.lowest;
+  const bool ramp = size.lowest <= params.foot && rise >= params.least_rise &&
+                    scatter_about_plane(search, params, workspace) <= params.bent * rise;
   const bool curb = size.highest <= params.curb_height && size.length >= params.curb_length;
   const bool terrace = size.lowest <= params.terrace_height && area >= params.terrace_area;
-  if (!ramp && !curb && !terrace) return false;
+  if (!ramp && !curb && !terrace) return DeckKind::kNone;
   const double unevenness = unevenness_of(search, deck, workspace);
-  return unevenness >= 0.0 && unevenness <= params.unevenness;
+  if (unevenness < 0.0 || unevenness > params.unevenness) return DeckKind::kNone;
+  return curb ? DeckKind::kLevel : DeckKind::kRamp;
+}
+
+// Top of a deck at a cell: of the cell and those of the deck beside it.
+float top_at(const DeckSearch& search, std::size_t slot, std::int32_t deck,
+             const DeckWorkspace& workspace) {
+  const CellIndex at = search.grid.geometry.index_of(search.grid.cell[slot]);
+  float top = search.cells.high[slot];
+  for (int l = at.l - 1; l <= at.l + 1; ++l) {
+    for (int w = at.w - 1; w <= at.w + 1; ++w) {
+      const Slot other = search.grid.slot_at({l, w});
+      if (other == kUnobserved) continue;
+      const auto o = static_cast<std::size_t>(other);
+      if (workspace.number[o] == deck) top = std::max(top, search.cells.high[o]);
+    }
+  }
+  return top;
 }
 
 }  // namespace
@@ -127,6 +171,7 @@ void find_decks(const ElevationGrid& grid, const GroundSegmentation& ground,
   workspace.candidate.resize(n);
   workspace.number.assign(n, -1);
   cells.deck.assign(n, -1);
+  cells.deck_low.assign(n, 0.0F);
   for (std::size_t slot = 0; slot < n; ++slot) {
     const bool thin = cells.high[slot] - cells.low[slot] <= static_cast<float>(params.thickness);
     workspace.candidate[slot] = ground.rule[slot] == GroundRule::kHigh && thin ? 1 : 0;
@@ -139,9 +184,15 @@ void find_decks(const ElevationGrid& grid, const GroundSegmentation& ground,
     collect_members(search, slot, workspace);
     for (const std::int32_t member : workspace.members)
       workspace.number[static_cast<std::size_t>(member)] = tried;
-    if (within_reach(search, params, tried, workspace)) {
-      for (const std::int32_t member : workspace.members)
-        cells.deck[static_cast<std::size_t>(member)] = found;
+    const DeckKind kind = kind_of(search, params, tried, workspace);
+    if (kind != DeckKind::kNone) {
+      for (const std::int32_t member : workspace.members) {
+        const auto s = static_cast<std::size_t>(member);
+        cells.deck[s] = found;
+        cells.deck_low[s] = kind == DeckKind::kRamp ? cells.low[s]
+                                                    : top_at(search, s, tried, workspace) -
+                                                          static_cast<float>(params.side);
+      }
       ++found;
     }
     ++tried;

@@ -118,7 +118,9 @@ void label_field_points(const DescriptionWorkspace& workspace, const Description
     result.cluster[i] =
         slot < 0 ? kNoCluster : description.clusters.cluster_of[static_cast<std::size_t>(slot)];
     if (slot >= 0 && result.support[i] == Support::kAbove &&
-        description.field.deck[static_cast<std::size_t>(slot)] >= 0)
+        description.field.deck[static_cast<std::size_t>(slot)] >= 0 &&
+        workspace.field.points.height[i] >=
+            description.field.deck_low[static_cast<std::size_t>(slot)])
       result.support[i] = Support::kGround;
     result.terrain_class[i] = result.cluster[i] == kNoCluster
                                   ? TerrainClass::kNone

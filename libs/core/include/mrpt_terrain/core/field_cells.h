@@ -30,6 +30,7 @@ struct FieldCells {
   std::vector<float> high;          ///< highest of them; 0 without
   std::vector<float> floor;  ///< mean height of the points on and below the ground, grid frame
   std::vector<std::int32_t> deck;  ///< number of the deck that the points above are, or -1
+  std::vector<float> deck_low;     ///< where `deck` >= 0: lower points are of the deck's side
   std::vector<float> rim;          ///< height of the ground around the cell, grid frame
 
   [[nodiscard]] std::size_t size() const { return ground.size(); }
