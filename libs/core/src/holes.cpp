@@ -58,6 +58,16 @@ void sum_around(const GroundSurface& surface, const RimLattice& rim, HoleWorkspa
   }
 }
 
+// Adds the height of the rim to the base in every cell.
+void raise_base_to_rim(const GroundSurface& surface, HoleWorkspace& workspace) {
+  const RimLattice rim{surface.lattice().side >> kRimLevel};
+  for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
+    const RimSums& mean = workspace.around[rim.at(surface.cells.cell[slot])];
+    workspace.base[slot].height +=
+        mean.weight > 0.0F ? mean.sum / mean.weight : workspace.height[slot];
+  }
+}
+
 // Mean height of the ground above the base level, twice: the second time without what lies low.
 void measure_rim(const FieldWorkspace& field, HoleWorkspace& workspace) {
   const GroundSurface& surface = field.surface;
@@ -65,10 +75,12 @@ void measure_rim(const FieldWorkspace& field, HoleWorkspace& workspace) {
   const RimLattice rim{lattice.side >> kRimLevel};
   const LevelView base = view_of_level(field.surface_workspace, lattice, kBaseLevel);
   workspace.height.resize(surface.ground.size());
+  workspace.base.resize(surface.ground.size());
   for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
     const LatticeCell cell = surface.cells.cell[slot];
-    workspace.height[slot] =
-        surface.node[surface.cells.number_of(cell)] - base.at_cell(cell, kBaseLevel).height;
+    const LevelView::Linear at = base.at_cell(cell, kBaseLevel);
+    workspace.base[slot] = {at.height, at.gradient_x, at.gradient_y};
+    workspace.height[slot] = surface.node[surface.cells.number_of(cell)] - at.height;
   }
   const auto size = static_cast<std::size_t>(rim.side) * static_cast<std::size_t>(rim.side);
   workspace.sums.resize(size);
@@ -77,19 +89,21 @@ void measure_rim(const FieldWorkspace& field, HoleWorkspace& workspace) {
     sum_heights(surface, rim, again, workspace);
     sum_around(surface, rim, workspace);
   }
+  raise_base_to_rim(surface, workspace);
 }
 
-// Height of the rim at a place, or that of the ground where there is none.
-float rim_at(const FieldWorkspace& field, const HoleWorkspace& workspace, float x, float y,
+// Height of the rim at a place, or that of the ground where nothing is known of it.
+float rim_at(const GroundSurface& surface, const HoleWorkspace& workspace, float x, float y,
              float ground) {
-  const SquareLattice& lattice = field.surface.lattice();
+  const SquareLattice& lattice = surface.lattice();
   const std::int32_t number = lattice.cell_at(x, y);
   if (number < 0) return ground;
-  const RimLattice rim{lattice.side >> kRimLevel};
-  const RimSums& mean = workspace.around[rim.at({number / lattice.side, number % lattice.side})];
-  if (mean.weight <= 0.0F) return ground;
-  return view_of_level(field.surface_workspace, lattice, kBaseLevel).at(x, y).height +
-         mean.sum / mean.weight;
+  const std::int32_t slot = surface.cells.slot_of[static_cast<std::size_t>(number)];
+  if (slot < 0) return ground;
+  const LatticeCell cell = surface.cells.cell[static_cast<std::size_t>(slot)];
+  const RimBase& base = workspace.base[static_cast<std::size_t>(slot)];
+  return base.height + base.gradient_x * (x - lattice.centre(cell.row)) +
+         base.gradient_y * (y - lattice.centre(cell.column));
 }
 
 float depth_of(const FieldCells& cells, std::size_t slot) {
@@ -104,7 +118,7 @@ void mark_candidates(const FieldWorkspace& field, const ElevationGrid& grid,
   cells.rim.resize(grid.observed());
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
     const Position2 centre = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[slot]));
-    cells.rim[slot] = rim_at(field, workspace, static_cast<float>(centre.x),
+    cells.rim[slot] = rim_at(field.surface, workspace, static_cast<float>(centre.x),
                              static_cast<float>(centre.y), cells.ground[slot]);
     workspace.candidate[slot] =
         cells.on[slot] + cells.below[slot] > 0 && depth_of(cells, slot) >= least ? 1 : 0;

@@ -7,8 +7,9 @@ namespace mrpt_terrain {
 namespace {
 
 constexpr int kTop = kSurfaceLevels - 1;
-// Corrections per level: the second sees which heights are within reach of the first.
-constexpr int kCorrections = 2;
+// Corrections per level: the second sees which heights are within reach of the first. The finest
+// level gains nothing by it.
+constexpr int corrections(int level) { return level == 0 ? 1 : 2; }
 // A cell that is seen by many others counts as this many at most.
 constexpr float kMostCells = 4.0F;
 // Weight of a height below the reference is at least this share of that of a perfect cell: what is
@@ -139,7 +140,7 @@ void refine_level(const GroundSurfaceParams& params, int level, GroundSurfaceWor
 
 void correct_level(const GroundSurfaceParams& params, int level, GroundSurfaceWorkspace& workspace,
                    const GroundSurface& surface) {
-  for (int pass = 0; pass < kCorrections; ++pass) {
+  for (int pass = 0; pass < corrections(level); ++pass) {
     sum_differences(params, level, workspace, surface);
     apply_differences(static_cast<float>(params.hold), side_of(surface.lattice(), level), workspace,
                       workspace.level[static_cast<std::size_t>(level)]);

@@ -43,6 +43,11 @@ struct RimSums {
   float sum = 0.0F, weight = 0.0F;
 };
 
+/// Height of the rim at the centre of a cell, and how it changes in it.
+struct RimBase {
+  float height = 0.0F, gradient_x = 0.0F, gradient_y = 0.0F;
+};
+
 /// A point in or around a hole.
 struct HolePoint {
   float x, y, z;
@@ -53,6 +58,7 @@ struct HolePoint {
 struct HoleWorkspace {
   std::vector<RimSums> sums, around;    ///< per cell of the rim's level
   std::vector<float> height;            ///< per slot of the surface: low height above level 3
+  std::vector<RimBase> base;            ///< per slot of the surface
   std::vector<std::uint8_t> candidate;  ///< per slot of the grid
   std::vector<std::int32_t> members;    ///< slots of one hole
   std::vector<std::uint8_t> in_hole;    ///< per slot of the grid: one of the members
