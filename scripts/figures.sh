@@ -11,7 +11,7 @@ usage() {
 usage: scripts/figures.sh [FOLDER]
 
 Writes the pictures in doc/images: of the VLP-16 scan that Debian's mrpt-common brings along, of a
-small made-up world, of a simulated one in paper mode and field mode side by side, and the plan of a
+small made-up world, of two simulated ones in paper mode and field mode side by side, and the plan of a
 scene. Builds terrain-rawlog and terrain-sim first, or uses those in FOLDER if it is given.
 TEXT
 }
@@ -100,6 +100,7 @@ main() {
   made_up_world >"$work/made_up_world.ply"
   "$program" import "$work/made_up_world.ply" --output "$work/made_up_world.rawlog"
   picture made_up_world "$work/made_up_world.rawlog" -c "$project_folder/params/paper.ini"
+  modes modes_hills_2 hills 2
   modes modes_mixed_4 mixed 4
   "$programs/terrain-sim" "$project_folder/params/scenes/drive.yaml" --preview "$images/drive_plan.png"
 }
