@@ -11,8 +11,8 @@ usage() {
 usage: scripts/figures.sh [FOLDER]
 
 Writes the pictures in doc/images: of the VLP-16 scan that Debian's mrpt-common brings along, of a
-small made-up world, and the plan of a scene. Builds terrain-rawlog and terrain-sim first, or uses
-those in FOLDER if it is given.
+small made-up world, of two simulated ones in paper mode and field mode side by side, and the plan of a
+scene. Builds terrain-rawlog and terrain-sim first, or uses those in FOLDER if it is given.
 TEXT
 }
 
@@ -54,6 +54,29 @@ picture() {
   cp "$work/$name/scan_000000.png" "$images/$name.png"
 }
 
+# classes_of NAME INPUT OPTION...: describes INPUT and cuts the classes of its first scan, with their
+# legend, out of the picture: $work/NAME.png.
+classes_of() {
+  local name="$1" input="$2"
+  shift 2
+  say "$name: $*"
+  "$program" process "$input" "$@" --output-dir "$work/$name"
+  convert "$work/$name/scan_000000.png" -gravity NorthEast -crop 756x780+0+74 +repage "$work/$name.png"
+}
+
+# modes NAME FAMILY SEED: the first scan of a simulated world in paper mode, on the left, and in
+# field mode, as NAME.png.
+modes() {
+  local name="$1" family="$2" seed="$3" map=(--set grid.length=36 --set grid.width=36)
+  "$programs/terrain-sim" --family "$family" --family-seed "$seed" --sweeps 1 --no-truth \
+    --output "$work/world.rawlog"
+  local scan=("$work/world.rawlog" --poses "$work/world.tum")
+  classes_of paper_mode "${scan[@]}" -c "$project_folder/params/paper_outdoor.ini" "${map[@]}"
+  classes_of field_mode "${scan[@]}" -c "$project_folder/params/field.ini" "${map[@]}"
+  convert "$work/paper_mode.png" "$work/field_mode.png" +append -strip -colors 256 \
+    "PNG8:$images/$name.png"
+}
+
 main() {
   case "${1:-}" in -h | --help) usage; return ;; esac
   local programs="${1:-}"
@@ -77,6 +100,8 @@ main() {
   made_up_world >"$work/made_up_world.ply"
   "$program" import "$work/made_up_world.ply" --output "$work/made_up_world.rawlog"
   picture made_up_world "$work/made_up_world.rawlog" -c "$project_folder/params/paper.ini"
+  modes modes_hills_2 hills 2
+  modes modes_mixed_4 mixed 4
   "$programs/terrain-sim" "$project_folder/params/scenes/drive.yaml" --preview "$images/drive_plan.png"
 }
 

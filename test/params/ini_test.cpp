@@ -309,5 +309,13 @@ TEST(IniTest, PaperOutdoorIniGivesEveryParameterAndOnlyScalesTheMap) {
   EXPECT_EQ(dump_ini(params), dump_ini(same)) << "a key is missing in paper_outdoor.ini";
 }
 
+TEST(IniTest, FieldIniGivesEveryParameterAndChoosesFieldMode) {
+  const DescriptionParams params = load_over_scrambled("field.ini");
+  EXPECT_EQ(params.description.mode, DescriptionMode::kField);
+  DescriptionParams same = DescriptionParams();
+  load_ini(MRPT_TERRAIN_SOURCE_DIR "/params/field.ini", same);
+  EXPECT_EQ(dump_ini(params), dump_ini(same)) << "a key is missing in field.ini";
+}
+
 }  // namespace
 }  // namespace mrpt_terrain::params

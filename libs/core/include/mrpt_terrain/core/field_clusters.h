@@ -12,17 +12,18 @@ namespace mrpt_terrain {
 
 /// How cells become things.
 struct FieldClusterParams {
-  int t_c = 2;                 ///< fewest cells of a thing
-  int t_points = 5;            ///< fewest points of a thing
+  int t_c = 2;                 ///< fewest cells of a thing,
+  int t_points = 5;            ///< unless it has this many points
   double link = 0.25;          ///< metres: gap between cells of one thing
   double link_growth = 0.012;  ///< and this much more per metre of distance from the robot
   double step = 0.3;           ///< metres: gap in height between cells of one thing
 
   template <class Self, class Visitor>
   static void visit_params(Self& self, Visitor&& visit) {
-    visit(self.t_c, ParamInfo{"t_c", "T_c", "", 1, 1000000, "things of fewer cells are dropped"});
-    visit(self.t_points,
-          ParamInfo{"t_points", "", "", 1, 1000000, "things of fewer points are dropped"});
+    visit(self.t_c, ParamInfo{"t_c", "T_c", "", 1, 1000000,
+                              "things of fewer cells and fewer than t_points points are dropped"});
+    visit(self.t_points, ParamInfo{"t_points", "", "", 1, 1000000,
+                                   "things with this many points are kept in any case"});
     visit(self.link,
           ParamInfo{"link", "", "m", 0.0, 10.0, "widest gap between cells of one thing"});
     visit(self.link_growth, ParamInfo{"link_growth", "", "m/m", 0.0, 1.0,

@@ -12,7 +12,7 @@
 
 /// \file
 /// The local ground reference of field mode: a height of the ground for every place around the
-/// robot, from one scan. doc/method.md explains the steps with their sources.
+/// robot, from one scan. doc/field-mode.md explains the steps with their sources.
 namespace mrpt_terrain {
 
 /// How the ground is told from what stands on it. Lengths are metres.

@@ -70,8 +70,9 @@ struct HoleWorkspace {
 /// ground reference, that goes down into holes, is compared with; ground that lies low does not
 /// count in it. Cells that lie below the rim and touch are a hole if they are deep, and most of
 /// what is seen around them lies on the height of the rim: a dip in rolling ground has no rim, the
-/// foot of a step has it on one side only. \param[in,out] cells `rim` is filled in \param[in,out]
-/// ground cells of holes become `GroundRule::kLow`
+/// foot of a step has it on one side only.
+/// \param[in,out] cells `rim` is filled in
+/// \param[in,out] ground cells of holes become `GroundRule::kLow`
 void find_holes(const FieldWorkspace& field, const ElevationGrid& grid, const HoleParams& params,
                 HoleWorkspace& workspace, FieldCells& cells, GroundSegmentation& ground);
 
