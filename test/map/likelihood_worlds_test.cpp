@@ -222,8 +222,11 @@ TEST(LikelihoodWorlds, IsGreatestNearTheTruthWhereTheWorldFixesThePose) {
   const int seeds = number_of("TERRAIN_LIKELIHOOD_SEEDS");
   const int first = number_of("TERRAIN_LIKELIHOOD_FIRST");
   Tally all;
-  const std::vector<std::string> families =
-      seeds == 0 ? std::vector<std::string>{"clutter", "mixed"} : sim::family_names(kFamilies);
+  const char* only = std::getenv("TERRAIN_LIKELIHOOD_FAMILY");
+  const std::vector<std::string> families = seeds == 0
+                                                ? std::vector<std::string>{"clutter", "mixed"}
+                                            : only != nullptr ? std::vector<std::string>{only}
+                                                              : sim::family_names(kFamilies);
   for (const std::string& family : families) {
     Tally enough, little;
     for (int k = first; k < first + std::max(1, seeds); ++k) {
