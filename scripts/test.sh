@@ -9,8 +9,8 @@ usage() {
 usage: scripts/test.sh [--sanitizers] [--paper]
 
 Installs the missing Debian packages of packages.apt, then builds and tests: the core library alone,
-with --sanitizers (or SANITIZERS=1) everything under the address and undefined-behaviour sanitizers,
-and at last everything optimised. Warnings are errors. Ends with CTest's summary.
+with --sanitizers (or SANITIZERS=1) everything under the address and undefined-behaviour sanitizers
+and what uses threads under the thread sanitizer, and at last everything optimised. Warnings are errors. Ends with CTest's summary.
 
 With --paper the packages of packages-paper.apt are installed too, so that the estimators of PCL are
 built and tested; without them that part is left out, and CMake says so.
@@ -27,6 +27,14 @@ test_preset() {
     --parallel "$(nproc)"
 }
 
+# What runs in several threads, under the thread sanitizer; builds nothing else.
+test_threads() {
+  configure tsan -DMRPT_TERRAIN_WERROR=ON
+  build tsan threads_test
+  say "Testing build/tsan"
+  ctest --test-dir "$project_folder/build/tsan" --output-on-failure --no-tests=error -R '^threads\.'
+}
+
 main() {
   local sanitizers="${SANITIZERS:-}"
   local lists=(packages.apt)
@@ -41,7 +49,10 @@ main() {
   done
   install_packages "${lists[@]}"
   test_preset core-only
-  [[ -z "$sanitizers" || "$sanitizers" == 0 ]] || test_preset asan
+  if [[ -n "$sanitizers" && "$sanitizers" != 0 ]]; then
+    test_preset asan
+    test_threads
+  fi
   test_preset ci
 }
 

@@ -18,13 +18,17 @@ using namespace mrpt_terrain;
 const std::string kPrefix = "map_terrainMap_00";
 
 // MRPT's reader takes no account of case.
+bool is_same(const std::string& a, const std::string& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
+           return std::tolower(static_cast<unsigned char>(x)) ==
+                  std::tolower(static_cast<unsigned char>(y));
+         });
+}
+
 bool is_of_the_map(const params::SectionText& section) {
   const std::string beginning = kPrefix + "_";
   return section.name.size() > beginning.size() &&
-         std::equal(beginning.begin(), beginning.end(), section.name.begin(), [](char a, char b) {
-           return std::tolower(static_cast<unsigned char>(a)) ==
-                  std::tolower(static_cast<unsigned char>(b));
-         });
+         is_same(section.name.substr(0, beginning.size()), beginning);
 }
 
 void load_definition(const std::string& file, MapParams& params) {
@@ -44,6 +48,31 @@ std::vector<params::Section> short_sections(MapParams& params) {
   return sections;
 }
 
+// Whether a setting is about this key of a map's definition.
+bool is_set(const std::string& key, const std::vector<std::string>& settings) {
+  return std::any_of(settings.begin(), settings.end(), [&key](const std::string& setting) {
+    for (const params::SectionText& section : params::read_assignment(setting, "--set").sections) {
+      for (const params::KeyText& text : section.keys) {
+        if (is_same(text.key, key)) return true;
+      }
+    }
+    return false;
+  });
+}
+
+// The defaults are those of the paper's single scans, whose cells are smaller than the voxels.
+// Fused scans need voxels that fit the cells: what was not asked for follows.
+void fit_voxels(const std::vector<std::string>& settings, MapParams& params) {
+  if (params.creation.fusion != Fusion::kRolling || !params.creation.octree) return;
+  double& cell = params.description.grid.cell_size;
+  double& voxel = params.creation.octree_resolution;
+  if (!is_set("cell_size", settings)) {
+    cell = voxel;
+  } else if (!is_set("octree_resolution", settings)) {
+    voxel = cell;
+  }
+}
+
 }  // namespace
 
 MapParams load_map_settings(const std::string& file, const std::vector<std::string>& settings) {
@@ -53,6 +82,7 @@ MapParams load_map_settings(const std::string& file, const std::vector<std::stri
   for (const std::string& setting : settings) {
     params::assign_all(params::read_assignment(setting, "--set"), sections);
   }
+  if (file.empty()) fit_voxels(settings, result);
   check_together(result, "--set:");
   return result;
 }

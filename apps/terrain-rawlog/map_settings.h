@@ -9,7 +9,8 @@
 /// Parameters of a terrain map from a definition as MRPT's programs read it
 /// (`params/mrpt/terrain_map.ini`: sections `[map_terrainMap_00_...]`), and from settings after it.
 /// Throws params::ParameterError, also for a file without any such section.
-/// \param file empty: the defaults
+/// \param file empty: the defaults; where scans are fused, cells and voxels then have the same size
+///   unless `settings` say otherwise
 /// \param settings "section.key=value", the section without its prefix
 [[nodiscard]] mrpt_terrain::MapParams load_map_settings(const std::string& file,
                                                         const std::vector<std::string>& settings);

@@ -30,7 +30,9 @@ io::Trajectory trajectory_for(const std::string& file, const InputOptions& optio
   if (options.scan_files) return {};
   if (!options.poses.empty()) return io::load_tum(options.poses);
   io::PoseSource source = io::PoseSource::kNone;
-  return io::read_trajectory(file, source);
+  // The same damage is met and reported where the scans before it have been worked on.
+  std::string damage;
+  return io::read_trajectory(file, source, &damage);
 }
 
 // Once per run, on the first scan that shows the ground.
@@ -141,12 +143,7 @@ void read_file(std::size_t file_number, ScanReading& reading, const ScanHandler&
   try {
     set_externals_dir(reading.options.externals_dir, file);
     reader = open_input(file, reading.options.scan_files);
-    try {
-      reading.pipeline.trajectory = trajectory_for(file, reading.options);
-    } catch (const io::ReadError&) {
-      // The same damage is met and reported where the scans before it have been described.
-      reading.pipeline.trajectory = io::Trajectory();
-    }
+    reading.pipeline.trajectory = trajectory_for(file, reading.options);
     read_all(file_number, *reader, reading, handle);
   } catch (const io::ReadError& error) {
     reading.messages.error(error.what());

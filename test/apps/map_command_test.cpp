@@ -2,6 +2,7 @@
 // `terrain-rawlog map`.
 #include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/maps/CSimpleMap.h>
+#include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <octomap/OcTree.h>
@@ -224,6 +225,45 @@ TEST(MapCommand, FusedScansNeedPoses) {
   EXPECT_TRUE(contains(two.out, "not inserted:\n  1 x no pose\n")) << two.out;
 }
 
+// Poses that the file itself holds count up to where it is damaged, as its scans do.
+TEST(MapCommand, ADamagedFileKeepsItsPosesBeforeTheDamage) {
+  const auto folder = fresh_folder();
+  std::string bytes;
+  for (int k = 0; k < 4; ++k) {
+    mrpt::obs::CObservationOdometry odometry;
+    odometry.timestamp = mrpt::Clock::fromDouble(1000.0 + 0.1 * k);
+    odometry.odometry = mrpt::poses::CPose2D(10.0 * k, 0.0, 0.0);
+    bytes += stored(odometry) + stored(drive_scan(k));
+  }
+  const std::string input =
+      write_file(folder / "drive.rawlog", bytes.substr(0, bytes.size() - 1000));
+  const ProgramResult result = build_map(folder, input, kRolling);
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_TRUE(contains(result.err, "error: " + input)) << result.err;
+  EXPECT_TRUE(contains(result.out, "3 scans inserted in ")) << result.out;
+  const CTerrainMap map = load_map_file((folder / "built/map.metricmap").string());
+  EXPECT_EQ(map.snapshot()->revision, 3U);
+  EXPECT_EQ(map.snapshot()->T_map_robot.translation().x(), 20.0);
+}
+
+TEST(MapCommand, FusedScansNeedNoFurtherSettings) {
+  const auto folder = fresh_folder();
+  const std::string fused = "creationOpts.fusion=rolling";
+  const std::string input = shipped("pothole_road.rawlog"), poses = shipped("pothole_road.tum");
+  const std::vector<std::pair<Arguments, double>> cases = {
+      {{}, 0.2},
+      {{"--set", "creationOpts.cell_size=0.3"}, 0.3},
+      {{"--set", "creationOpts.octree_resolution=0.4"}, 0.4}};
+  for (const auto& [settings, size] : cases) {
+    const ProgramResult result = build_map(
+        folder, input, Arguments{"--poses", poses, "--to-index", "1", "--set", fused} + settings);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const CTerrainMap map = load_map_file((folder / "built/map.metricmap").string());
+    EXPECT_EQ(map.params().description.grid.cell_size, size);
+    EXPECT_EQ(map.params().creation.octree_resolution, size);
+  }
+}
+
 TEST(MapCommand, SingleScansDoWithoutPoses) {
   const auto folder = fresh_folder();
   const std::string input = write_file(folder / "drive.rawlog", drive_bytes(2));
@@ -285,7 +325,8 @@ TEST(MapCommand, WrongUseIsNamedAndNothingIsDone) {
       {{"-c", "none.ini"}, "none.ini: cannot be read: No such file or directory"},
       {{"--set", "creationOpts.fusion=roling"}, "--set: [creationOpts] fusion = roling: "},
       {{"--set", "grid.length=3"}, "--set: [grid]: unknown section"},
-      {{"--set", "creationOpts.fusion=rolling", "--set", "creationOpts.cell_size=0.3"},
+      {{"--set", "creationOpts.fusion=rolling", "--set", "creationOpts.cell_size=0.3", "--set",
+        "creationOpts.octree_resolution=0.2"},
        "--set: octree_resolution: must go into cell_size"},
       {{"--from-index", "3", "--to-index", "2"}, "--from-index 3 is behind --to-index 2"},
       {{"--sensor-pose", "1 2"}, "--sensor-pose: \"1 2\" is no pose"}};

@@ -125,6 +125,11 @@ TEST(ReadTrajectory, ACutFileIsAnError) {
       write_file(fresh_folder() / "a.rawlog", bytes.substr(0, bytes.size() - 1));
   PoseSource source = PoseSource::kNone;
   EXPECT_THROW((void)read_trajectory(file, source), ReadError);
+  std::string damage;
+  const Trajectory before = read_trajectory(file, source, &damage);
+  EXPECT_EQ(before.size(), 1U) << "the poses before the damage";
+  EXPECT_EQ(source, PoseSource::kOdometry);
+  EXPECT_TRUE(contains(damage, "a.rawlog")) << damage;
 }
 
 TEST(ReadTrajectory, OracleTheDemoOfMrptMovesAsItsActionsSay) {

@@ -63,6 +63,19 @@ TEST(MapFiles, TheOctreeFilesAreOctomaps) {
   std::ostringstream binary;
   map.octree()->writeBinaryConst(binary);
   EXPECT_EQ(content_of(prefix + ".bt"), binary.str());
+  std::ostringstream with_odds;
+  map.octree()->write(with_odds);
+  EXPECT_EQ(content_of(prefix + ".ot"), with_odds.str());
+}
+
+TEST(MapFiles, SavingSaysNothing) {
+  const std::string prefix = fresh_folder() + "/map";
+  const CTerrainMap map = seen_map();
+  ::testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStdout();
+  map.saveMetricMapRepresentationToFile(prefix);
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 TEST(MapFiles, TheCostMapLiesWhereItsYamlSays) {

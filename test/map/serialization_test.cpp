@@ -120,6 +120,19 @@ INSTANTIATE_TEST_SUITE_P(Fusions, SerializationOf,
                          ::testing::Values(Fusion::kScan, Fusion::kRolling),
                          [](const auto& fusion) { return std::string(name_of(fusion.param)); });
 
+// MRPT's generic parameters stand before the map's own bytes.
+TEST(Serialization, DamagedGenericParametersAreRefused) {
+  const CTerrainMap map;
+  const std::string good = bytes_of(map);
+  const std::size_t end = good.find("TERRAIN\n");
+  ASSERT_NE(end, std::string::npos);
+  for (std::size_t k = end - 5; k < end; ++k) {
+    std::string bad = good;
+    bad[k] = static_cast<char>(bad[k] ^ 0x01);
+    EXPECT_NE(refusal_of(bad), "") << end - k << " bytes before the map's own";
+  }
+}
+
 // Every byte of a small map, changed one at a time: never a crash, never a map.
 TEST(Serialization, DamagedBytesAreRefused) {
   MapParams params = small_map(0.5);

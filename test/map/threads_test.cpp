@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One thread inserts while others read, draw, serialise and localise. Means most under the thread
-// sanitizer (preset tsan).
+// Two threads insert while others read, draw, save, copy, convert and localise. Means most under
+// the thread sanitizer (preset tsan).
 #include <gtest/gtest.h>
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/opengl/CSetOfObjects.h>
@@ -8,17 +8,21 @@
 #include <octomap/OcTree.h>
 
 #include <atomic>
+#include <filesystem>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "mrpt_terrain/map/map_file.h"
 #include "mrpt_terrain/map/terrain_map.h"
+#include "observations.h"
 #include "terrain_maps.h"
 
 namespace mrpt_terrain {
 namespace {
 
 using mrpt::poses::CPose3D;
+using testing::fresh_folder;
 using testing::lidar_pose;
 using testing::observation_of;
 using testing::scene_points;
@@ -64,14 +68,36 @@ TEST_P(TerrainMapThreads, ReadersNeverSeeHalfAScan) {
     map.getVisualizationInto(objects);
     EXPECT_LE(map.computeObservationLikelihood(observation, CPose3D()), 0.0);
   }));
+  readers.push_back(reader([&map] {
+    const CTerrainMap copy(map);
+    const TerrainSnapshotPtr now = copy.snapshot();
+    EXPECT_EQ(now->revision == 0, copy.octree()->size() == 0);
+    EXPECT_EQ(now->clusters.size(), now->description.things.size());
+    (void)map.as_points_map();
+    (void)map.as_occupancy_grid();
+    (void)map.as_voxels();
+  }));
+  const std::filesystem::path folder = fresh_folder();
+  readers.push_back(reader([&map, &folder] {
+    save_map_file(map, (folder / "map.metricmap").string());
+    map.saveMetricMapRepresentationToFile((folder / "map").string());
+    (void)load_map_file((folder / "map.metricmap").string());
+  }));
+  std::vector<std::thread> writers;
   map.insertObservation(observation, CPose3D());
   map.clear();
-  for (int k = 0; k < 12; ++k) {
-    ASSERT_TRUE(map.insertObservation(observation, CPose3D(0.2 * k, 0, 0, 0, 0, 0)));
+  for (const double side : {0.0, 0.4}) {
+    writers.emplace_back([&map, &observation, side] {
+      for (int k = 0; k < 6; ++k) {
+        EXPECT_TRUE(map.insertObservation(observation, CPose3D(0.2 * k, side, 0, 0, 0, 0)));
+        EXPECT_EQ(map.last_refusal(), "");
+      }
+    });
   }
+  for (std::thread& thread : writers) thread.join();
   done = true;
   for (std::thread& thread : readers) thread.join();
-  EXPECT_GE(reads.load(), 3);
+  EXPECT_GE(reads.load(), static_cast<int>(readers.size()));
   EXPECT_EQ(map.snapshot()->revision, 12U);
 }
 

@@ -82,12 +82,25 @@ class PoseCollector {
   bool waits_for_stamp_ = false;  // the last action had none; the next observation gives it
 };
 
-Trajectory read_keyframes(const std::string& file) {
+/// Calls `next` until it says false or throws ReadError, what then goes to `damage`.
+/// \return whether there is more
+template <class Next>
+bool has_next(const Next& next, std::string* damage) {
+  if (damage == nullptr) return next();
+  try {
+    return next();
+  } catch (const ReadError& error) {
+    *damage = error.what();
+    return false;
+  }
+}
+
+Trajectory read_keyframes(const std::string& file, std::string* damage) {
   Trajectory keyframes;
   const auto reader = open_observations(file);
   ReadObservation read;
   std::optional<std::size_t> last;
-  while (reader->next(read)) {
+  while (has_next([&] { return reader->next(read); }, damage)) {
     if (!read.T_map_robot || last == read.entry || !is_known(read.observation->timestamp)) continue;
     keyframes.add(mrpt::Clock::toDouble(read.observation->timestamp), *read.T_map_robot);
     last = read.entry;
@@ -97,17 +110,17 @@ Trajectory read_keyframes(const std::string& file) {
 
 }  // namespace
 
-Trajectory read_trajectory(const std::string& file, PoseSource& source) {
+Trajectory read_trajectory(const std::string& file, PoseSource& source, std::string* damage) {
   ObjectStream stream(file);
   const auto* id = mrpt::rtti::findRegisteredClass(stream.first_class());
   if (id != nullptr && id->derivedFrom(CLASS_ID(mrpt::maps::CSimpleMap))) {
-    Trajectory keyframes = read_keyframes(file);
+    Trajectory keyframes = read_keyframes(file, damage);
     source = keyframes.empty() ? PoseSource::kNone : PoseSource::kKeyframes;
     return keyframes;
   }
   PoseCollector collector;
   StoredObject stored;
-  while (stream.next(stored)) {
+  while (has_next([&] { return stream.next(stored); }, damage)) {
     if (stored.object) collector.take(*stored.object);
   }
   return collector.best(source);

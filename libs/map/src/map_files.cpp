@@ -44,25 +44,24 @@ void save_scene(const CTerrainMap& map, const std::string& file) {
   });
 }
 
-// What octomap's `writeBinaryConst` writes; that one talks on standard error.
-std::string binary_file_of(const octomap::OcTree& tree) {
+/// What octomap's `write` and `writeBinaryConst` put before the nodes; those talk on standard
+/// error.
+std::string octree_header(const octomap::OcTree& tree, const std::string& title) {
   std::ostringstream out;
-  out << "# Octomap OcTree binary file\n# (feel free to add / change comments, but leave the first "
-         "line as it is!)\n#\nid "
+  out << title
+      << "\n# (feel free to add / change comments, but leave the first line as it is!)\n#\nid "
       << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << tree.getResolution()
       << "\ndata\n";
-  tree.writeBinaryData(out);
   return out.str();
 }
 
 void save_octree(const octomap::OcTree& tree, const std::string& prefix) {
-  std::ostringstream with_odds;
-  // octomap's own `write` without its way of dealing with files.
-  if (!tree.write(with_odds)) {
-    throw std::runtime_error(prefix + ".ot: the OctoMap could not be stored");
-  }
-  files::write_atomically(prefix + ".ot", with_odds.str());
-  files::write_atomically(prefix + ".bt", binary_file_of(tree));
+  files::write_atomically(
+      prefix + ".ot", octree_header(tree, "# Octomap OcTree file") + OctreeHalf::bytes_of(tree));
+  std::ostringstream binary;
+  tree.writeBinaryData(binary);
+  files::write_atomically(prefix + ".bt",
+                          octree_header(tree, "# Octomap OcTree binary file") + binary.str());
 }
 
 /// Costs in percent over an axis-parallel rectangle of the map, the upper left cell first.
@@ -152,6 +151,7 @@ void save_files(const CTerrainMap& map, const std::string& prefix) {
   options.scan_index = now->revision - 1;
   options.stamp = now->stamp;
   options.params = map.params().description;
+  if (map.params().creation.fusion == Fusion::kRolling) options.axes = view::ViewAxes::kMap;
   view::write_top_view(prefix + "_classes.png", now->description, options);
   view::write_cost_view(prefix + "_cost.png", now->description, now->costs, now->robot, options);
 }

@@ -9,6 +9,8 @@
 #include <string>
 
 #include "fusion_half.h"
+#include "judged_scan.h"
+#include "likelihood.h"
 #include "mrpt_terrain/core/describe.h"
 #include "mrpt_terrain/map/terrain_map.h"
 #include "octree_half.h"
@@ -38,6 +40,9 @@ struct CTerrainMap::State {
   mutable std::mutex writing;
   MapWriter writer;
   std::unique_ptr<OctreeHalf> octree;  ///< null: the map keeps none; never replaced
+  /// Kept between likelihoods; not part of what the map knows.
+  JudgedScans judged;
+  LikelihoodFields fields;
 
   [[nodiscard]] TerrainSnapshotPtr snapshot() const;
   void publish(TerrainSnapshotPtr next);
@@ -70,11 +75,6 @@ struct CTerrainMap::State {
 [[nodiscard]] inline bool is_known(const Cost& cost) {
   return cost.status == CostStatus::kOk || cost.status == CostStatus::kLethal;
 }
-
-/// log-likelihood of points, window frame of the robot, at a pose (likelihood.cpp).
-[[nodiscard]] double log_likelihood(const TerrainSnapshot& snapshot, const PointsView& points,
-                                    const Eigen::Isometry3d& T_map_robot,
-                                    const MapLikelihoodParams& params);
 
 /// Everything that a snapshot is saved as (map_files.cpp).
 void save_files(const CTerrainMap& map, const std::string& prefix);

@@ -22,11 +22,19 @@ namespace mrpt_terrain {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'T', 'E', 'R', 'R', 'A', 'I', 'N', '\n'};
-constexpr std::uint32_t kFormat = 1;
+/// Of format 1 the checksum did not cover MRPT's generic parameters.
+constexpr std::uint32_t kFormat = 2;
 const std::string kPrefix = "map";
 
-std::uint32_t checksum_of(const std::string& bytes) {
+/// Of MRPT's parameters of all maps, and the bytes of a map. The parameters stand before the bytes,
+/// as MRPT stores them.
+std::uint32_t checksum_of(const mrpt::maps::TMapGenericParams& generic, std::uint32_t format,
+                          const std::string& bytes) {
+  const std::array<Bytef, 3> flags{generic.enableSaveAs3DObject,
+                                   generic.enableObservationLikelihood,
+                                   generic.enableObservationInsertion};
   uLong sum = crc32(0L, Z_NULL, 0);
+  if (format >= 2) sum = crc32(sum, flags.data(), static_cast<uInt>(flags.size()));
   for (std::size_t begin = 0; begin < bytes.size();) {
     const std::size_t n = std::min<std::size_t>(bytes.size() - begin, 1U << 30U);
     sum = crc32(sum, reinterpret_cast<const Bytef*>(bytes.data() + begin), static_cast<uInt>(n));
@@ -242,7 +250,8 @@ void CTerrainMap::serializeTo(mrpt::serialization::CArchive& out) const {
   const std::string bytes = state_->bytes();
   out << genericMapParams;
   out.WriteBuffer(kMagic.data(), kMagic.size());
-  out << kFormat << static_cast<std::uint64_t>(bytes.size()) << checksum_of(bytes);
+  out << kFormat << static_cast<std::uint64_t>(bytes.size())
+      << checksum_of(genericMapParams, kFormat, bytes);
   if (!bytes.empty()) out.WriteBuffer(bytes.data(), bytes.size());
 }
 
@@ -259,12 +268,12 @@ void CTerrainMap::serializeFrom(mrpt::serialization::CArchive& in, uint8_t versi
   std::uint32_t format = 0, checksum = 0;
   std::uint64_t size = 0;
   in >> format >> size >> checksum;
-  if (format != kFormat) {
+  if (format < 1 || format > kFormat) {
     throw std::runtime_error("terrain map: format " + std::to_string(format) +
                              " is unknown; this version reads 1 to " + std::to_string(kFormat));
   }
   const std::string bytes = read_bytes(in, size);
-  if (checksum_of(bytes) != checksum) {
+  if (checksum_of(generic, format, bytes) != checksum) {
     throw std::runtime_error("terrain map: it is damaged (the checksum is wrong)");
   }
   try {

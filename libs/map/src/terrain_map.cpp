@@ -189,14 +189,10 @@ bool CTerrainMap::internal_insertObservation(
 double CTerrainMap::internal_computeObservationLikelihood(
     const mrpt::obs::CObservation& observation, const mrpt::poses::CPose3D& taken_from) const {
   try {
-    io::SensorPoints sensor_points;
-    io::Scan scan;
-    const io::Conversion conversion =
-        io::convert_observation(observation, state_->params.input, sensor_models(), sensor_points);
-    if (conversion.status != io::ConversionStatus::kOk) return 0.0;
-    io::to_robot_frame(sensor_points, nullptr, state_->params.input, scan);
-    return log_likelihood(*snapshot(), scan.points.view(), isometry_of(taken_from),
-                          state_->params.likelihood);
+    const auto scan = state_->judged.of(observation, state_->params, sensor_models());
+    if (!scan->usable) return 0.0;
+    return log_likelihood(*state_->fields.of(snapshot()), scan->points.view(),
+                          isometry_of(taken_from), state_->params.likelihood);
   } catch (const std::exception&) {
     return 0.0;  // hosts sum over many maps: one that has nothing to say must not stop them
   }
@@ -205,10 +201,7 @@ double CTerrainMap::internal_computeObservationLikelihood(
 bool CTerrainMap::internal_canComputeObservationLikelihood(
     const mrpt::obs::CObservation& observation) const {
   try {
-    io::SensorPoints sensor_points;
-    return io::convert_observation(observation, state_->params.input, sensor_models(),
-                                   sensor_points)
-               .status == io::ConversionStatus::kOk;
+    return state_->judged.of(observation, state_->params, sensor_models())->usable;
   } catch (const std::exception&) {
     return false;
   }

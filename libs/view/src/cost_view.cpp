@@ -110,10 +110,10 @@ void write_cost_view(const std::string& file, const Description& description,
   Canvas canvas(layout.width, layout.height);
   const std::vector<Cost> worst = costs_of(costs, robot);
   draw_title(canvas, layout, description, options);
-  draw_heights(canvas, layout, description);
+  draw_heights(canvas, layout, description, options.axes);
   const MapPanel& panel = layout.classes;
   paint_costs(canvas, panel, description.grid, worst);
-  draw_grid(canvas, panel);
+  draw_grid(canvas, panel, options.axes);
   clip_to(canvas, panel);
   draw_robot(canvas, panel);
   cairo_restore(canvas.context());

@@ -151,14 +151,14 @@ void draw_legend(Canvas& canvas, const TopViewLayout& layout, const Description&
 }
 
 void draw_classes(Canvas& canvas, const TopViewLayout& layout, const Description& description,
-                  std::size_t max_labels) {
+                  const TopViewOptions& options) {
   const MapPanel& panel = layout.classes;
   const auto kinds = kind_raster(description, panel.width, panel.height);
   paint_kinds(canvas, panel, kinds);
-  draw_grid(canvas, panel);
+  draw_grid(canvas, panel, options.axes);
   clip_to(canvas, panel);
   draw_robot(canvas, panel);
-  draw_numbers(canvas, panel, description, kinds, max_labels);
+  draw_numbers(canvas, panel, description, kinds, options.max_labels);
   cairo_restore(canvas.context());
   draw_caption(canvas, panel, layout.right_column, layout.right_column + layout.column_width,
                "Classes of clusters");
@@ -173,8 +173,8 @@ void write_top_view(const std::string& file, const Description& description,
       top_view_layout(description.grid.geometry, options.max_width, options.max_height);
   Canvas canvas(layout.width, layout.height);
   draw_title(canvas, layout, description, options);
-  draw_heights(canvas, layout, description);
-  draw_classes(canvas, layout, description, options.max_labels);
+  draw_heights(canvas, layout, description, options.axes);
+  draw_classes(canvas, layout, description, options);
   draw_footer(canvas, layout, options.params);
   files::write_atomically(file, png_bytes(canvas.pixels()));
 }

@@ -133,7 +133,7 @@ std::string shortened(Canvas& canvas, const std::string& text, const TextStyle& 
 
 }  // namespace
 
-void draw_grid(Canvas& canvas, const MapPanel& panel) {
+void draw_grid(Canvas& canvas, const MapPanel& panel, ViewAxes axes) {
   const double step = round_step(kLeastGridStep / panel.pixels_per_metre());
   const int decimals = decimals_of(step);
   const double right = panel.left + panel.width;
@@ -150,8 +150,11 @@ void draw_grid(Canvas& canvas, const MapPanel& panel) {
     canvas.line(column, bottom, column, bottom + 4.0, kFaintInk, 1.0);
     canvas.text(column, bottom + 16.0, fixed(y, decimals), kTick);
   }
-  canvas.text_upwards(panel.left - 42.0, panel.top + 0.5 * panel.height, "x, forward [m]", kTick);
-  canvas.text(panel.left + 0.5 * panel.width, bottom + 33.0, "y, left [m]", kTick);
+  const bool of_robot = axes == ViewAxes::kRobot;
+  canvas.text_upwards(panel.left - 42.0, panel.top + 0.5 * panel.height,
+                      of_robot ? "x, forward [m]" : "x (map) [m]", kTick);
+  canvas.text(panel.left + 0.5 * panel.width, bottom + 33.0,
+              of_robot ? "y, left [m]" : "y (map) [m]", kTick);
   canvas.frame_box(box_of(panel), kFaintInk);
 }
 
@@ -257,11 +260,12 @@ void clip_to(Canvas& canvas, const MapPanel& panel) {
   cairo_clip(canvas.context());
 }
 
-void draw_heights(Canvas& canvas, const TopViewLayout& layout, const Description& description) {
+void draw_heights(Canvas& canvas, const TopViewLayout& layout, const Description& description,
+                  ViewAxes axes) {
   const HeightRange range = robust_range(description.grid);
   const MapPanel& panel = layout.heights;
   if (!range.empty) paint_heights(canvas, panel, description.grid, range);
-  draw_grid(canvas, panel);
+  draw_grid(canvas, panel, axes);
   clip_to(canvas, panel);
   draw_robot(canvas, panel);
   cairo_restore(canvas.context());

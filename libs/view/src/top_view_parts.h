@@ -29,10 +29,11 @@ void draw_title(Canvas& canvas, const TopViewLayout& layout, const Description& 
                 const TopViewOptions& options);
 void draw_footer(Canvas& canvas, const TopViewLayout& layout, const DescriptionParams& params);
 /// The left panel with caption and colour scale.
-void draw_heights(Canvas& canvas, const TopViewLayout& layout, const Description& description);
+void draw_heights(Canvas& canvas, const TopViewLayout& layout, const Description& description,
+                  ViewAxes axes);
 
 /// Lines of the grid over what was painted, and the axes.
-void draw_grid(Canvas& canvas, const MapPanel& panel);
+void draw_grid(Canvas& canvas, const MapPanel& panel, ViewAxes axes);
 /// Until cairo_restore, nothing is drawn outside the panel.
 void clip_to(Canvas& canvas, const MapPanel& panel);
 /// A triangle that points along x, and the axes.

@@ -61,6 +61,10 @@ enum class PoseSource : std::uint8_t { kNone, kRobotPose, kOdometry, kActions, k
 /// Poses of the robot that the file itself holds, in one streaming pass: CObservationRobotPose if
 /// there are any, else CObservationOdometry, else the increments of the actions, else keyframes.
 /// \param[out] source which of them it was
-[[nodiscard]] Trajectory read_trajectory(const std::string& file, PoseSource& source);
+/// \param[out] damage null: a damaged or cut-off file throws ReadError; else it gives the poses
+/// before
+///   the damage, and `damage` says what is wrong (unchanged if nothing is)
+[[nodiscard]] Trajectory read_trajectory(const std::string& file, PoseSource& source,
+                                         std::string* damage = nullptr);
 
 }  // namespace mrpt_terrain::io

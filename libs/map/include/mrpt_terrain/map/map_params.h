@@ -70,7 +70,7 @@ struct OctreeInsertParams {
 struct MapLikelihoodParams {
   int decimation = 10;          ///< every n-th point counts
   double sigma = 0.1;           ///< metres: of the distance between a point and the map
-  double max_distance = 0.5;    ///< metres: farther away, all distances count the same
+  double max_distance = 0.3;    ///< metres: farther away, all distances count the same
   double unknown_share = 0.25;  ///< of the greatest penalty, for points where nothing is known
 
   template <class Self, class Visitor>
