@@ -107,7 +107,7 @@ Lanes random_lanes(RandomGenerator& random) {
     lanes.cell[lane] = batch.first[lane];
     lanes.last[lane] = batch.last[lane];
   }
-  lanes.alive = static_cast<std::uint8_t>(random.below(256));
+  lanes.alive = static_cast<std::uint16_t>(random.below(65536));
   return lanes;
 }
 

@@ -53,7 +53,7 @@ void walk_plain(Lanes& lanes, Trail& trail) {
     }
     trail.complete[lane] = last_in_word(entered, steps);
     for (std::size_t axis = 0; axis < 3; ++axis) lanes.crossing[axis][lane] = t[axis];
-    if (!alive) lanes.alive = static_cast<std::uint8_t>(lanes.alive & ~(1U << lane));
+    if (!alive) lanes.alive = static_cast<std::uint16_t>(lanes.alive & ~(1U << lane));
   }
 }
 
@@ -74,65 +74,96 @@ void walk_plain(Lanes& lanes, Trail& trail) {
 template <Ties kTies>
 inline constexpr int kGoesFirst = kTies == Ties::kAsOctomap ? _CMP_LT_OQ : _CMP_LE_OQ;
 
+#define MRPT_TERRAIN_AVX512 gnu::target("avx512f,avx512dq")
+
+// Eight of the lanes in registers.
+struct EightLanes {
+  std::size_t first;
+  __m512d tx, ty, tz;
+  __m512i cell, word, steps;
+  __mmask8 alive;
+  alignas(32) __mmask8 entered[kChunk];
+};
+
+[[MRPT_TERRAIN_AVX512, gnu::always_inline]] inline void load(const Lanes& lanes, std::size_t first,
+                                                             EightLanes& eight) {
+  eight.first = first;
+  eight.tx = _mm512_load_pd(lanes.crossing[0] + first);
+  eight.ty = _mm512_load_pd(lanes.crossing[1] + first);
+  eight.tz = _mm512_load_pd(lanes.crossing[2] + first);
+  eight.cell = _mm512_load_si512(lanes.cell + first);
+  eight.word = _mm512_setzero_si512();
+  eight.steps = _mm512_setzero_si512();
+  eight.alive = static_cast<__mmask8>(lanes.alive >> first);
+}
+
 template <Ties kTies>
-[[gnu::target("avx512f,avx512dq")]] void walk_avx512(Lanes& lanes, Trail& trail) {
-  __m512d tx = _mm512_load_pd(lanes.crossing[0]);
-  __m512d ty = _mm512_load_pd(lanes.crossing[1]);
-  __m512d tz = _mm512_load_pd(lanes.crossing[2]);
-  const __m512d spacing_x = _mm512_load_pd(lanes.spacing[0]);
-  const __m512d spacing_y = _mm512_load_pd(lanes.spacing[1]);
-  const __m512d spacing_z = _mm512_load_pd(lanes.spacing[2]);
-  const __m512d length = _mm512_load_pd(lanes.length);
-  const __m512i step_x = _mm512_load_si512(lanes.step[0]);
-  const __m512i step_y = _mm512_load_si512(lanes.step[1]);
-  const __m512i step_z = _mm512_load_si512(lanes.step[2]);
+[[MRPT_TERRAIN_AVX512, gnu::always_inline]] inline void step_all(const Lanes& lanes, std::size_t k,
+                                                                 EightLanes& eight, Trail& trail) {
+  const std::size_t first = eight.first;
   const __m512i bits_x = _mm512_set1_epi64(static_cast<long long>(kAxisBits[0]));
   const __m512i bits_y = _mm512_set1_epi64(static_cast<long long>(kAxisBits[1]));
   const __m512i bits_z = _mm512_set1_epi64(static_cast<long long>(kAxisBits[2]));
   const __m512i one = _mm512_set1_epi64(1);
   const __m512i within_word = _mm512_set1_epi64(63);
   const __m512i beyond_word = _mm512_set1_epi64(~63LL);
-  __m512i word = _mm512_setzero_si512();
-  alignas(32) __mmask8 entered[kChunk];
-  const __m512i last = _mm512_load_si512(lanes.last);
-  __m512i cell = _mm512_load_si512(lanes.cell);
-  __m512i steps = _mm512_setzero_si512();
-  __mmask8 alive = lanes.alive;
-  for (std::size_t k = 0; k < kChunk; ++k) {
-    const __mmask8 x_before_y = _mm512_cmp_pd_mask(tx, ty, kGoesFirst<kTies>);
-    const __mmask8 x = _mm512_mask_cmp_pd_mask(x_before_y, tx, tz, kGoesFirst<kTies>);
-    const __mmask8 y = _mm512_mask_cmp_pd_mask(_knot_mask8(x_before_y), ty, tz, kGoesFirst<kTies>);
-    const __mmask8 z = _kxnor_mask8(x, y);  // never both
-    const __m512i bits = _mm512_mask_mov_epi64(_mm512_mask_mov_epi64(bits_z, x, bits_x), y, bits_y);
-    const __m512i step = _mm512_mask_mov_epi64(_mm512_mask_mov_epi64(step_z, x, step_x), y, step_y);
-    // Counts along one axis: carries run through the bits of the others, which are set.
-    const __m512i sum = _mm512_add_epi64(_mm512_ternarylogic_epi64(cell, bits, bits, 0xf3), step);
-    const __m512i before = cell;
-    cell = _mm512_ternarylogic_epi64(bits, sum, cell, 0xca);  // bits ? sum : cell
-    const __m512i bit = _mm512_maskz_sllv_epi64(0xff, one, _mm512_and_si512(cell, within_word));
-    entered[k] = _mm512_test_epi64_mask(_mm512_xor_si512(cell, before), beyond_word);
-    word = _mm512_mask_or_epi64(bit, _knot_mask8(entered[k]), word, bit);
-    tx = _mm512_mask_add_pd(tx, x, tx, spacing_x);
-    ty = _mm512_mask_add_pd(ty, y, ty, spacing_y);
-    tz = _mm512_mask_add_pd(tz, z, tz, spacing_z);
-    const __m512d next = _mm512_maskz_min_pd(0xff, _mm512_maskz_min_pd(0xff, tx, ty), tz);
-    alive = _mm512_mask_cmp_pd_mask(alive, next, length, _CMP_LE_OQ);
-    alive = _mm512_mask_cmpneq_epi64_mask(alive, cell, last);
-    steps = _mm512_mask_add_epi64(steps, alive, steps, one);
-    _mm512_store_si512(trail.cell[k], cell);
-    _mm512_store_si512(trail.word[k], word);
-  }
-  _mm512_store_pd(lanes.crossing[0], tx);
-  _mm512_store_pd(lanes.crossing[1], ty);
-  _mm512_store_pd(lanes.crossing[2], tz);
-  _mm512_store_si512(lanes.cell, cell);
-  lanes.alive = alive;
-  alignas(64) std::uint64_t counts[kLanes];
-  _mm512_store_si512(counts, steps);
-  set_complete(entered, counts, kLanes, trail.complete);
+  const auto at = [first](const auto* row) { return row + first; };
+  auto& [unused, tx, ty, tz, cell, word, steps, alive, entered] = eight;
+  const __mmask8 x_before_y = _mm512_cmp_pd_mask(tx, ty, kGoesFirst<kTies>);
+  const __mmask8 x = _mm512_mask_cmp_pd_mask(x_before_y, tx, tz, kGoesFirst<kTies>);
+  const __mmask8 y = _mm512_mask_cmp_pd_mask(_knot_mask8(x_before_y), ty, tz, kGoesFirst<kTies>);
+  const __mmask8 z = _kxnor_mask8(x, y);  // never both
+  const __m512i bits = _mm512_mask_mov_epi64(_mm512_mask_mov_epi64(bits_z, x, bits_x), y, bits_y);
+  const __m512i step =
+      _mm512_mask_mov_epi64(_mm512_mask_mov_epi64(_mm512_load_si512(at(lanes.step[2])), x,
+                                                  _mm512_load_si512(at(lanes.step[0]))),
+                            y, _mm512_load_si512(at(lanes.step[1])));
+  // Counts along one axis: carries run through the bits of the others, which are set.
+  const __m512i sum = _mm512_add_epi64(_mm512_ternarylogic_epi64(cell, bits, bits, 0xf3), step);
+  const __m512i before = cell;
+  cell = _mm512_ternarylogic_epi64(bits, sum, cell, 0xca);  // bits ? sum : cell
+  const __m512i bit = _mm512_maskz_sllv_epi64(0xff, one, _mm512_and_si512(cell, within_word));
+  entered[k] = _mm512_test_epi64_mask(_mm512_xor_si512(cell, before), beyond_word);
+  word = _mm512_mask_or_epi64(bit, _knot_mask8(entered[k]), word, bit);
+  tx = _mm512_mask_add_pd(tx, x, tx, _mm512_load_pd(at(lanes.spacing[0])));
+  ty = _mm512_mask_add_pd(ty, y, ty, _mm512_load_pd(at(lanes.spacing[1])));
+  tz = _mm512_mask_add_pd(tz, z, tz, _mm512_load_pd(at(lanes.spacing[2])));
+  const __m512d next = _mm512_maskz_min_pd(0xff, _mm512_maskz_min_pd(0xff, tx, ty), tz);
+  alive = _mm512_mask_cmp_pd_mask(alive, next, _mm512_load_pd(at(lanes.length)), _CMP_LE_OQ);
+  alive = _mm512_mask_cmpneq_epi64_mask(alive, cell, _mm512_load_si512(at(lanes.last)));
+  steps = _mm512_mask_add_epi64(steps, alive, steps, one);
+  _mm512_store_si512(trail.cell[k] + first, cell);
+  _mm512_store_si512(trail.word[k] + first, word);
 }
 
-// Four of the eight lanes, from number `first` on.
+[[MRPT_TERRAIN_AVX512]] void store(const EightLanes& eight, Lanes& lanes, Trail& trail) {
+  _mm512_store_pd(lanes.crossing[0] + eight.first, eight.tx);
+  _mm512_store_pd(lanes.crossing[1] + eight.first, eight.ty);
+  _mm512_store_pd(lanes.crossing[2] + eight.first, eight.tz);
+  _mm512_store_si512(lanes.cell + eight.first, eight.cell);
+  lanes.alive = static_cast<std::uint16_t>((lanes.alive & ~(0xff << eight.first)) |
+                                           eight.alive << eight.first);
+  alignas(64) std::uint64_t counts[8];
+  _mm512_store_si512(counts, eight.steps);
+  set_complete(eight.entered, counts, 8, trail.complete + eight.first);
+}
+
+// Two times eight lanes take turns: a step of one does not wait for the step of the other.
+template <Ties kTies>
+[[MRPT_TERRAIN_AVX512]] void walk_avx512(Lanes& lanes, Trail& trail) {
+  static_assert(kLanes == 16);
+  EightLanes low, high;
+  load(lanes, 0, low);
+  load(lanes, 8, high);
+  for (std::size_t k = 0; k < kChunk; ++k) {
+    step_all<kTies>(lanes, k, low, trail);
+    step_all<kTies>(lanes, k, high, trail);
+  }
+  store(low, lanes, trail);
+  store(high, lanes, trail);
+}
+
+// Four of the lanes, from number `first` on.
 template <Ties kTies>
 [[gnu::target("avx2")]] void walk_four_lanes(Lanes& lanes, Trail& trail, int first) {
   const auto words = [first](auto* row) { return reinterpret_cast<__m256i*>(row + first); };
@@ -184,7 +215,7 @@ template <Ties kTies>
   _mm256_store_pd(lanes.crossing[2] + first, tz);
   _mm256_store_si256(words(lanes.cell), cell);
   const int still = _mm256_movemask_pd(_mm256_castsi256_pd(alive));
-  lanes.alive = static_cast<std::uint8_t>((lanes.alive & ~(15 << first)) | still << first);
+  lanes.alive = static_cast<std::uint16_t>((lanes.alive & ~(15 << first)) | still << first);
   alignas(32) std::uint64_t counts[4];
   _mm256_store_si256(reinterpret_cast<__m256i*>(counts), steps);
   set_complete(entered, counts, 4, trail.complete + first);
@@ -192,8 +223,9 @@ template <Ties kTies>
 
 template <Ties kTies>
 void walk_avx2(Lanes& lanes, Trail& trail) {
-  walk_four_lanes<kTies>(lanes, trail, 0);
-  walk_four_lanes<kTies>(lanes, trail, 4);
+  for (int first = 0; first < static_cast<int>(kLanes); first += 4) {
+    walk_four_lanes<kTies>(lanes, trail, first);
+  }
 }
 
 #endif

@@ -12,11 +12,11 @@
 namespace mrpt_terrain::octree {
 
 /// Rays walk side by side, a lane each.
-inline constexpr std::size_t kLanes = 8;
+inline constexpr std::size_t kLanes = 16;
 /// Steps between two looks at which lanes have arrived.
 inline constexpr std::size_t kChunk = 32;
 
-/// State of eight rays; what the arrays mean is said at `RayBatch`.
+/// State of the rays; what the arrays mean is said at `RayBatch`.
 struct Lanes {
   alignas(64) double crossing[3][kLanes];
   alignas(64) double spacing[3][kLanes];
@@ -24,7 +24,7 @@ struct Lanes {
   alignas(64) CellCode step[3][kLanes];
   alignas(64) CellCode cell[kLanes];
   alignas(64) CellCode last[kLanes];
-  std::uint8_t alive;  ///< a bit per lane: it has not arrived yet
+  std::uint16_t alive;  ///< a bit per lane: it has not arrived yet
 };
 
 /// Where the lanes went in one chunk. Cells of a lane that follow each other in one word of 4^3

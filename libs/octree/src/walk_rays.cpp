@@ -29,11 +29,14 @@ void load_lanes(const RayBatch& batch, const std::array<std::uint16_t, kLanes>& 
   for (std::size_t lane = 0; lane < count; ++lane) {
     if (lanes.cell[lane] != lanes.last[lane]) alive |= 1U << lane;
   }
-  lanes.alive = static_cast<std::uint8_t>(alive);
+  lanes.alive = static_cast<std::uint16_t>(alive);
 }
 
-void walk_lanes(ChunkWalker walk_chunk, Lanes& lanes, ScanCells& cells) {
+// `start` is the cursor of one of the first cells: that of most of them.
+void walk_lanes(ChunkWalker walk_chunk, const ScanCells::Cursor& start, Lanes& lanes,
+                ScanCells& cells) {
   std::array<ScanCells::Cursor, kLanes> cursors;
+  cursors.fill(start);
   Trail trail;
   while (lanes.alive != 0) {
     walk_chunk(lanes, trail);
@@ -50,9 +53,16 @@ void walk_lanes(ChunkWalker walk_chunk, Lanes& lanes, ScanCells& cells) {
 
 // Rays in the order of their lengths, so that those side by side arrive together.
 void sort_by_cells(const RayBatch& rays, std::array<std::uint16_t, RayBatch::kCapacity>& order) {
-  for (std::size_t k = 0; k < rays.size; ++k) order[k] = static_cast<std::uint16_t>(k);
-  std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(rays.size),
-            [&rays](std::uint16_t a, std::uint16_t b) { return rays.cells[a] < rays.cells[b]; });
+  constexpr std::uint32_t kLongest = 511;  // longer rays are few, and take chunks of cells anyway
+  std::array<std::uint16_t, kLongest + 2> begin{};
+  const auto length_of = [&](std::size_t k) { return std::min(rays.cells[k], kLongest); };
+  for (std::size_t k = 0; k < rays.size; ++k) ++begin[length_of(k) + 1];
+  for (std::size_t k = 1; k < begin.size(); ++k) {
+    begin[k] = static_cast<std::uint16_t>(begin[k] + begin[k - 1]);
+  }
+  for (std::size_t k = 0; k < rays.size; ++k) {
+    order[begin[length_of(k)]++] = static_cast<std::uint16_t>(k);
+  }
 }
 
 }  // namespace
@@ -70,7 +80,7 @@ void walk_rays_by(ChunkWalker walk_chunk, RayBatch& rays, ScanCells& cells) {
     std::copy_n(order.begin() + static_cast<std::ptrdiff_t>(begin), count, group.begin());
     Lanes lanes;
     load_lanes(rays, group, count, lanes);
-    walk_lanes(walk_chunk, lanes, cells);
+    walk_lanes(walk_chunk, cursor, lanes, cells);
   }
   rays.size = 0;
 }
