@@ -336,6 +336,9 @@ void sort_cells_by_tile(const Sorter& sorter, const TileRange& tiles) {
   std::vector<std::int32_t>& begin = workspace.tile_begin;
   begin.assign(tiles.size() + 1, 0);
   workspace.cells.clear();
+  // There are at most as many cells as bins: memory for them grows with that for the bins only.
+  for (auto* list : {&workspace.cells, &workspace.by_tile}) list->reserve(bins.capacity());
+  workspace.hit.reserve(bins.capacity());
   for (const ScanBin& hit : bins) {
     const std::int32_t first =
         std::exchange(workspace.head[sorter.head_of(hit.cell)], std::int32_t{-1});

@@ -27,7 +27,7 @@ class Windows {
  public:
   Windows(const ElevationGrid& grid, int reach) : grid_(grid), reach_(reach) {}
 
-  CellSums about(CellIndex centre) {
+  MRPT_TERRAIN_LANES CellSums about(CellIndex centre) {
     if (centre.l != row_) start_row(centre.l);
     const int first = std::max(0, centre.w - reach_);
     const int last = std::min(grid_.geometry.cells_w() - 1, centre.w + reach_);
@@ -49,7 +49,7 @@ class Windows {
     column_of_.fill(-1);
   }
 
-  const CellSums& column_at(int w) {
+  MRPT_TERRAIN_LANES const CellSums& column_at(int w) {
     const std::size_t place = static_cast<std::size_t>(w) % kKept;
     CellSums& column = columns_[place];
     if (column_of_[place] == w) return column;
@@ -268,14 +268,9 @@ LocalPlane plane_of(const WindowLanes& window, std::size_t lane, std::int32_t le
   return plane;
 }
 
-}  // namespace
-
-void fit_local_planes(const ElevationGrid& grid, int reach, std::vector<LocalPlane>& planes) {
-  assert(reach >= 1 && reach <= kMaxReach);
-  const double cell_size = grid.geometry.cell_size();
-  // A quarter of the variance of the centres of 2 r + 1 rows, r (r + 1) / 3 squared cells.
-  const double least_spread = 0.25 * reach * (reach + 1) / 3.0 * cell_size * cell_size;
-  planes.resize(grid.observed());
+MRPT_TERRAIN_WIDE_REGISTERS
+void fit_all(const ElevationGrid& grid, int reach, double least_spread,
+             std::vector<LocalPlane>& planes) {
   Windows windows(grid, reach);
   WindowLanes lanes;
   for (std::size_t first = 0; first < grid.observed(); first += kCellLanes) {
@@ -289,6 +284,17 @@ void fit_local_planes(const ElevationGrid& grid, int reach, std::vector<LocalPla
       planes[first + lane] = plane_of(lanes, lane, 2 * reach + 1);
     }
   }
+}
+
+}  // namespace
+
+void fit_local_planes(const ElevationGrid& grid, int reach, std::vector<LocalPlane>& planes) {
+  assert(reach >= 1 && reach <= kMaxReach);
+  const double cell_size = grid.geometry.cell_size();
+  // A quarter of the variance of the centres of 2 r + 1 rows, r (r + 1) / 3 squared cells.
+  const double least_spread = 0.25 * reach * (reach + 1) / 3.0 * cell_size * cell_size;
+  planes.resize(grid.observed());
+  fit_all(grid, reach, least_spread, planes);
 }
 
 }  // namespace mrpt_terrain
