@@ -598,6 +598,26 @@ TEST(Costs, SameInputGivesTheSameBytesAndOldMemoryLeavesNoTrace) {
   EXPECT_EQ(costs.status, fresh.costs.status);
 }
 
+// Cells are worked on side by side; where in the row a cell comes must not matter.
+TEST(Costs, InvariantCellsFarAwayDoNotChangeABit) {
+  const Costed alone = costed(mixed_world(27), 0.1, {}, 8.0);
+  for (int more = 1; more <= 9; ++more) {
+    Points points = mixed_world(27);
+    for (int k = 0; k < more; ++k) add_point(points, -3.95, -3.95 + 0.3 * k, 0.1 * k);
+    const Costed c = costed(points, 0.1, {}, 8.0);
+    ASSERT_EQ(c.grid.observed(), alone.grid.observed() + static_cast<std::size_t>(more));
+    for (std::size_t k = 0; k < alone.grid.observed(); ++k) {
+      const auto n = static_cast<std::size_t>(
+          c.grid.slot_at(alone.grid.geometry.index_of(alone.grid.cell[k])));
+      ASSERT_EQ(c.costs.gradient_x[n], alone.costs.gradient_x[k]) << more << ", slot " << k;
+      ASSERT_EQ(c.costs.gradient_y[n], alone.costs.gradient_y[k]) << more << ", slot " << k;
+      ASSERT_EQ(c.costs.step[n], alone.costs.step[k]) << more << ", slot " << k;
+      ASSERT_EQ(c.costs.roughness[n], alone.costs.roughness[k]) << more << ", slot " << k;
+      ASSERT_EQ(c.costs.status[n], alone.costs.status[k]) << more << ", slot " << k;
+    }
+  }
+}
+
 TEST(Costs, SteadyStateDoesNotAllocate) {
   const Costed c = costed(mixed_world(26), 0.05);
   CostWorkspace workspace;

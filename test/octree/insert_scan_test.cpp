@@ -208,7 +208,7 @@ TEST(InsertScan, AFlippedTieRuleIsNoticed) {
     const InsertionOptions options;
     (void)collect_cells<Ties::kFlipped>(scan.ends(), scan.starts(), options, own.getResolution(),
                                         workspace);
-    update_tree(workspace.cells, own, nullptr);
+    update_tree(workspace.cells, own, nullptr, nullptr);
     test::insert_by_octomap(scan, options, reference);
     if (!test::same_tree(own, reference)) ++different;
   }

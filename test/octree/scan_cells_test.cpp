@@ -31,12 +31,11 @@ TEST(ScanCells, OracleHoldsWhatWasMarked) {
   for (int round = 0; round < 3; ++round) {
     std::map<CellCode, std::uint64_t> free, occupied;
     cells.clear();
-    ScanCells::Cursor cursor;
     for (int k = 0; k < 3000; ++k) {
       // Far more tiles than the table has places for at first.
       const CellCode code = (std::uint64_t{random.next()} << 16) & 0xffffffffffc0U;
       const std::uint64_t bit = std::uint64_t{1} << random.below(64);
-      cells.mark_free(code, bit, cursor);
+      cells.mark_free(code, bit);
       free[code] |= bit;
       if (k % 3 != 0) continue;
       cells.mark_occupied(code | 5);

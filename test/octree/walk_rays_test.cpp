@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "octree_scans.h"
 #include "walk_chunk.h"
@@ -106,28 +107,31 @@ Lanes random_lanes(RandomGenerator& random) {
     lanes.length[lane] = batch.length[lane];
     lanes.cell[lane] = batch.first[lane];
     lanes.last[lane] = batch.last[lane];
+    lanes.word[lane] = std::uint64_t{1} << (batch.first[lane] & 63);
   }
-  lanes.alive = static_cast<std::uint8_t>(random.below(256));
+  lanes.alive = static_cast<std::uint16_t>(random.below(65536));
   return lanes;
+}
+
+std::multiset<std::pair<CellCode, std::uint64_t>> sorted(const Marks& marks) {
+  std::multiset<std::pair<CellCode, std::uint64_t>> words;
+  for (std::size_t k = 0; k < marks.size; ++k) words.emplace(marks.cell[k], marks.word[k]);
+  return words;
 }
 
 /// Walks all lanes to their ends with both walkers, which must leave the same.
 void expect_same_walk(ChunkWalker walker, ChunkWalker oracle, const Lanes& start) {
   Lanes lanes = start, expected = start;
-  Trail trail, expected_trail;
+  Marks marks, expected_marks;
   while (expected.alive != 0) {
-    walker(lanes, trail);
-    oracle(expected, expected_trail);
+    walker(lanes, marks);
+    oracle(expected, expected_marks);
     ASSERT_EQ(lanes.alive, expected.alive);
+    ASSERT_EQ(sorted(marks), sorted(expected_marks));
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      ASSERT_EQ(trail.complete[lane], expected_trail.complete[lane]);
-      for (std::uint32_t left = trail.complete[lane]; left != 0; left &= left - 1) {
-        const auto k = static_cast<std::size_t>(__builtin_ctz(left));
-        ASSERT_EQ(trail.cell[k][lane], expected_trail.cell[k][lane]);
-        ASSERT_EQ(trail.word[k][lane], expected_trail.word[k][lane]);
-      }
       if ((lanes.alive >> lane & 1) == 0) continue;
       ASSERT_EQ(lanes.cell[lane], expected.cell[lane]);
+      ASSERT_EQ(lanes.word[lane], expected.word[lane]);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         ASSERT_EQ(lanes.crossing[axis][lane], expected.crossing[axis][lane]);
       }

@@ -2,20 +2,109 @@
 #include "mrpt_terrain/core/costs.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
-#include <utility>
+
+#include "lanes.h"
+#include "wide_registers.h"
 
 namespace mrpt_terrain {
 namespace {
 
+// Cells whose numbers begin the arrays below: that of the cells without points.
+constexpr std::size_t place_of(Slot slot) { return static_cast<std::size_t>(slot + 1); }
+
+// Whether `a` is known better than `b`: by the variance over the number of cells that tell it.
+bool is_better(const WindowQuality& a, const WindowQuality& b) {
+  return a.variance * b.cells < b.variance * a.cells;
+}
+
+void find_qualities(const std::vector<LocalPlane>& planes, std::vector<WindowQuality>& qualities) {
+  qualities.resize(planes.size() + 1);
+  qualities[place_of(kUnobserved)] = WindowQuality{};
+  for (std::size_t slot = 0; slot < planes.size(); ++slot) {
+    const LocalPlane& plane = planes[slot];
+    WindowQuality& quality = qualities[slot + 1];
+    quality = WindowQuality{};
+    if (plane.status != FeatureStatus::kOk) continue;
+    quality.variance = plane.roughness * plane.roughness;
+    quality.cells = static_cast<float>(plane.cells);
+  }
+}
+
+// The cells a window's reach away to the sides and corners of a cell, row by row.
+class WindowsAround {
+ public:
+  WindowsAround(const ElevationGrid& grid, int reach)
+      : grid_(grid), reach_(reach), row_(reach * grid.geometry.stride()) {}
+
+  // Calls visit(slot) for nine cells; kUnobserved also for those outside the grid.
+  template <class Visit>
+  void for_each(std::size_t slot, Visit&& visit) const {
+    const CellId id = grid_.cell[slot];
+    const CellIndex centre = grid_.geometry.index_of(id);
+    const bool has[3] = {centre.w >= reach_, true, centre.w + reach_ < grid_.geometry.cells_w()};
+    for (std::int32_t l = -1; l <= 1; ++l) {
+      const std::int32_t row = centre.l + l * reach_;
+      if (row < 0 || row >= grid_.geometry.cells_l()) continue;
+      const std::int32_t middle = value_of(id) + l * row_;
+      for (std::int32_t w = -1; w <= 1; ++w) {
+        // The frame, which is never observed, in place of cells outside.
+        const std::int32_t at = has[w + 1] ? middle + w * reach_ : 0;
+        visit(grid_.slot_of[static_cast<std::size_t>(at)]);
+      }
+    }
+  }
+
+ private:
+  const ElevationGrid& grid_;
+  std::int32_t reach_;
+  std::int32_t row_;
+};
+
+// The window whose plane is known best of those that contain the cell. Windows with fewer cells
+// than its own are left out, because few points lie on a plane by chance. Without branches: which
+// window is best is hard to predict.
+Slot best_window(const WindowsAround& windows, std::size_t slot, std::int32_t own_cells,
+                 const std::vector<WindowQuality>& qualities) {
+  const auto least_cells = static_cast<float>(own_cells);
+  WindowQuality quality{std::numeric_limits<float>::infinity(), 1.0F};  // worse than any
+  Slot best = kUnobserved;
+  const auto compare = [&](Slot other) {
+    const WindowQuality& candidate = qualities[place_of(other)];
+    const bool takes =
+        (candidate.cells >= least_cells) & static_cast<int>(is_better(candidate, quality));
+    best = takes ? other : best;
+    quality.variance = takes ? candidate.variance : quality.variance;
+    quality.cells = takes ? candidate.cells : quality.cells;
+  };
+  compare(static_cast<Slot>(slot));
+  windows.for_each(slot, compare);
+  return best;
+}
+
+void find_surfaces(const ElevationGrid& grid, int reach, CostWorkspace& workspace) {
+  find_qualities(workspace.planes, workspace.qualities);
+  workspace.surfaces.resize(grid.observed() + 1);
+  workspace.surfaces[place_of(kUnobserved)] = CellSurface{};
+  const WindowsAround windows(grid, reach);
+  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
+    const Slot best = best_window(windows, slot, workspace.planes[slot].cells, workspace.qualities);
+    CellSurface& surface = workspace.surfaces[slot + 1];
+    surface = CellSurface{};
+    if (best == kUnobserved) continue;
+    const LocalPlane& plane = workspace.planes[static_cast<std::size_t>(best)];
+    surface = {plane.x,          plane.y,         plane.z, plane.gradient_x,
+               plane.gradient_y, plane.roughness, 1.0F};
+  }
+}
+
 // What the stages below share of one call.
 struct Ground {
   const ElevationGrid& grid;
-  const std::vector<LocalPlane>& planes;
-  const std::vector<Slot>& surface;
+  const std::vector<CellSurface>& surfaces;
   double max_gradient;  // tan(max_climb)
 };
 
@@ -29,67 +118,153 @@ Place mean_of(const ElevationGrid& grid, std::size_t slot) {
   return {sums.x * share, sums.y * share, sums.z * share};
 }
 
-// Whether `a` is known better than `b`: by the variance over the number of cells that tell it.
-bool is_better(const LocalPlane& a, const LocalPlane& b) {
-  return a.roughness * a.roughness * static_cast<float>(b.cells) <
-         b.roughness * b.roughness * static_cast<float>(a.cells);
-}
+constexpr std::size_t kNearby = 9;  // a cell and its neighbours; opposite ones add up to 8
+constexpr std::size_t kSelf = 4;
 
-// The window whose plane is known best of those that contain the cell. Windows with fewer cells
-// than its own are left out, because few points lie on a plane by chance.
-Slot best_window(const ElevationGrid& grid, int reach, std::size_t slot,
-                 const std::vector<LocalPlane>& planes) {
-  const CellIndex centre = grid.geometry.index_of(grid.cell[slot]);
-  const LocalPlane& own = planes[slot];
-  Slot best = own.status == FeatureStatus::kOk ? static_cast<Slot>(slot) : kUnobserved;
-  for (int dl = -reach; dl <= reach; dl += reach) {
-    for (int dw = -reach; dw <= reach; dw += reach) {
-      const Slot other = grid.slot_at({centre.l + dl, centre.w + dw});
-      if (other == kUnobserved) continue;
-      const LocalPlane& plane = planes[static_cast<std::size_t>(other)];
-      if (plane.status != FeatureStatus::kOk || plane.cells < own.cells) continue;
-      if (best == kUnobserved || is_better(plane, planes[static_cast<std::size_t>(best)])) {
-        best = other;
-      }
-    }
-  }
-  return best;
-}
-
-// A cell, or one of its eight neighbours.
-struct Nearby {
-  Slot slot = kUnobserved;
-  const LocalPlane* surface = nullptr;  // null if it has none
-  double height = 0.0;                  // of the surface, carried on to the cell, metres
+// Cells side by side, with what is around them.
+struct CellsAround {
+  Slot slot[kNearby][kCellLanes] = {};
+  LaneArray known[kNearby];      // 1 or 0: there is a surface
+  LaneArray height[kNearby];     // of the surface, carried on to the cell, metres
+  LaneArray roughness[kNearby];  // of the surface; infinite without
+  LaneArray mean_z, points, h_diff;
+  LaneArray steepness;                 // |gradient_x| + |gradient_y| of the cell's own surface
+  LaneArray step, told;                // what comes out; told: which of the nearby, or -1
+  std::int64_t lone[kCellLanes] = {};  // not 0: in some direction no surface tells the step
 };
 
-// A cell and what is around it. Neighbours that lie opposite each other add up to 8.
-struct Surroundings {
-  Place here;
-  std::array<Nearby, 9> nearby;
-  double noise;  // least roughness of the surfaces, metres
-
-  [[nodiscard]] const Nearby& self() const { return nearby[4]; }
-};
-
-Surroundings surroundings_of(const Ground& ground, std::size_t slot) {
-  Surroundings result;
-  result.here = mean_of(ground.grid, slot);
+void set_lane(const Ground& ground, std::size_t slot, std::size_t lane, CellsAround& cells) {
+  const Place here = mean_of(ground.grid, slot);
   const std::int32_t stride = ground.grid.geometry.stride();
-  float least = std::numeric_limits<float>::infinity();
-  for (std::int32_t k = 0; k < 9; ++k) {
-    const std::int32_t id = value_of(ground.grid.cell[slot]) + (k / 3 - 1) * stride + k % 3 - 1;
-    Nearby& nearby = result.nearby[static_cast<std::size_t>(k)];
-    nearby.slot = ground.grid.slot_of[static_cast<std::size_t>(id)];
-    if (nearby.slot == kUnobserved) continue;
-    const Slot window = ground.surface[static_cast<std::size_t>(nearby.slot)];
-    if (window == kUnobserved) continue;
-    nearby.surface = &ground.planes[static_cast<std::size_t>(window)];
-    nearby.height = nearby.surface->height_at(result.here.x, result.here.y);
-    least = std::min(least, nearby.surface->roughness);
+  for (std::size_t k = 0; k < kNearby; ++k) {
+    const auto n = static_cast<std::int32_t>(k);
+    const std::int32_t id = value_of(ground.grid.cell[slot]) + (n / 3 - 1) * stride + n % 3 - 1;
+    const Slot nearby = ground.grid.slot_of[static_cast<std::size_t>(id)];
+    const CellSurface& surface = ground.surfaces[place_of(nearby)];
+    cells.slot[k][lane] = nearby;
+    cells.known[k].value[lane] = double{surface.known};
+    cells.height[k].value[lane] = surface.height_at(here.x, here.y);
+    cells.roughness[k].value[lane] = double{surface.roughness};
   }
-  result.noise = std::isfinite(least) ? double{least} : 0.0;
-  return result;
+  const CellSurface& own = ground.surfaces[slot + 1];
+  cells.mean_z.value[lane] = here.z;
+  cells.points.value[lane] = ground.grid.sums[slot].n;
+  cells.h_diff.value[lane] = double{ground.grid.h_diff(slot)};
+  cells.steepness.value[lane] = double{std::abs(own.gradient_x) + std::abs(own.gradient_y)};
+}
+
+// What is nearby, in registers.
+struct NearbyLanes {
+  MaskLanes known;
+  DoubleLanes height, roughness;
+};
+MRPT_TERRAIN_LANES void load(const CellsAround& cells, std::size_t k, NearbyLanes& nearby) {
+  const DoubleLanes zero{};
+  DoubleLanes known;
+  load(cells.known[k], known);
+  nearby.known = known > zero;
+  load(cells.height[k], nearby.height);
+  load(cells.roughness[k], nearby.roughness);
+}
+
+// Least roughness of the surfaces, metres; 0 without any.
+MRPT_TERRAIN_LANES void find_noise(const CellsAround& cells, DoubleLanes& noise) {
+  const DoubleLanes zero{};
+  const DoubleLanes infinite = zero + std::numeric_limits<double>::infinity();
+  noise = infinite;
+  for (const LaneArray& roughness : cells.roughness) {
+    DoubleLanes next;
+    load(roughness, next);
+    noise = next < noise ? next : noise;
+  }
+  noise = noise < infinite ? noise : zero;
+}
+
+// The cell's own extent in height beyond what slope and noise explain.
+MRPT_TERRAIN_LANES void find_step_within(const CellsAround& cells, double max_gradient,
+                                         double cell_size, const NearbyLanes& self,
+                                         const DoubleLanes& noise, DoubleLanes& step) {
+  constexpr double kNoiseExtent = 6.0;  // plus and minus three standard deviations
+  const DoubleLanes zero{};
+  DoubleLanes h_diff, steepness;
+  load(cells.h_diff, h_diff);
+  load(cells.steepness, steepness);
+  const DoubleLanes most = zero + std::sqrt(2.0) * max_gradient;
+  const DoubleLanes gradient = self.known & (steepness < most) ? steepness : most;
+  step = h_diff - gradient * cell_size - kNoiseExtent * noise;
+  step = step > zero ? step : zero;
+}
+
+// Difference between two heights carried on to the cell and the cell's own, which noise may have
+// moved by `tolerance`: counts in `step` where it is greater and `counts`.
+MRPT_TERRAIN_LANES void raise_to_spread(const DoubleLanes& before, const DoubleLanes& behind,
+                                        const DoubleLanes& own, const DoubleLanes& tolerance,
+                                        const MaskLanes& counts, DoubleLanes& step) {
+  const DoubleLanes high = before < behind ? behind : before;
+  const DoubleLanes low = before < behind ? before : behind;
+  const DoubleLanes apart = high - low;
+  const DoubleLanes below = high - own - tolerance;
+  const DoubleLanes above = own - low - tolerance;
+  DoubleLanes spread = apart < below ? below : apart;
+  spread = spread < above ? above : spread;
+  step = counts & (step < spread) ? spread : step;
+}
+
+// The surface that slope and roughness are told from: the cell's own, or, where those before and
+// behind it are apart by more than their roughness explains, the smoothest of the three. The cell
+// then holds the edge of a step, and a plane across it would call the step a slope.
+struct ToldLanes {
+  DoubleLanes which, roughness;
+};
+MRPT_TERRAIN_LANES void tell_smoothest(const NearbyLanes& before, const NearbyLanes& behind,
+                                       std::size_t k, ToldLanes& told) {
+  constexpr double kApart = 4.0;  // standard deviations
+  const DoubleLanes zero{};
+  const MaskLanes behind_is_smoother = behind.roughness < before.roughness;
+  const DoubleLanes smooth = behind_is_smoother ? behind.roughness : before.roughness;
+  const DoubleLanes rough = behind_is_smoother ? before.roughness : behind.roughness;
+  const DoubleLanes rise = before.height - behind.height;
+  const DoubleLanes size = rise < zero ? -rise : rise;
+  const MaskLanes takes =
+      before.known & behind.known & (size > kApart * rough) & (smooth < told.roughness);
+  const DoubleLanes which = behind_is_smoother ? zero + static_cast<double>(kNearby - 1 - k)
+                                               : zero + static_cast<double>(k);
+  told.which = takes ? which : told.which;
+  told.roughness = takes ? smooth : told.roughness;
+}
+
+// Step of the cells and the surface that is told; see the header.
+MRPT_TERRAIN_WIDE_REGISTERS
+void measure_lanes(double max_gradient, double cell_size, CellsAround& cells) {
+  constexpr double kSurelyNoise = 2.0;  // standard deviations of a mean height
+  const DoubleLanes zero{};
+  NearbyLanes self;
+  load(cells, kSelf, self);
+  DoubleLanes noise, mean_z, points, step;
+  find_noise(cells, noise);
+  load(cells.mean_z, mean_z);
+  load(cells.points, points);
+  take_roots(points);
+  const DoubleLanes tolerance = kSurelyNoise * noise / points;
+  find_step_within(cells, max_gradient, cell_size, self, noise, step);
+  ToldLanes told{self.known ? zero + static_cast<double>(kSelf) : zero - 1.0, self.roughness};
+  MaskLanes lone = zero != zero;
+  for (std::size_t k = 0; k < kSelf; ++k) {
+    NearbyLanes before, behind;
+    load(cells, k, before);
+    load(cells, kNearby - 1 - k, behind);
+    tell_smoothest(before, behind, k, told);
+    // Where one has no surface, the cell's own stands in, or else the other.
+    const DoubleLanes stand_in =
+        self.known ? self.height : (before.known ? before.height : behind.height);
+    const MaskLanes any = self.known | before.known | behind.known;
+    lone |= ~any;
+    raise_to_spread(before.known ? before.height : stand_in,
+                    behind.known ? behind.height : stand_in, mean_z, tolerance, any, step);
+  }
+  store(step, cells.step);
+  store(told.which, cells.told);
+  std::memcpy(cells.lone, &lone, sizeof(lone));
 }
 
 // By how much more two cells without surfaces differ in height than the robot can climb.
@@ -101,76 +276,37 @@ double unclimbable_rise(const Ground& ground, const Place& here, Slot other) {
   return std::abs(there.z - here.z) - ground.max_gradient * std::sqrt(dx * dx + dy * dy);
 }
 
-// Difference between two heights carried on to the cell and the cell's own, which noise may have
-// moved by `tolerance`.
-double spread_of(double before, double behind, double own, double tolerance) {
-  const auto [low, high] = std::minmax(before, behind);
-  return std::max({high - low, high - own - tolerance, own - low - tolerance});
-}
-
-// The cell's own extent in height beyond what slope and noise explain.
-double step_within(const Ground& ground, std::size_t slot, const Surroundings& around) {
-  constexpr double kNoiseExtent = 6.0;  // plus and minus three standard deviations
-  const LocalPlane* own = around.self().surface;
-  double gradient = std::sqrt(2.0) * ground.max_gradient;
-  if (own != nullptr) {
-    const double sum = std::abs(own->gradient_x) + std::abs(own->gradient_y);
-    gradient = std::min(gradient, sum);
-  }
-  const double by_slope = gradient * ground.grid.geometry.cell_size();
-  return ground.grid.h_diff(slot) - by_slope - kNoiseExtent * around.noise;
-}
-
-// Step of the cell; see the header.
-double step_at(const Ground& ground, std::size_t slot, const Surroundings& around) {
-  constexpr double kSurelyNoise = 2.0;  // standard deviations of a mean height
-  const double tolerance = kSurelyNoise * around.noise / std::sqrt(ground.grid.sums[slot].n);
-  double step = std::max(0.0, step_within(ground, slot, around));
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Nearby* before = &around.nearby[k];
-    const Nearby* behind = &around.nearby[8 - k];
-    if (before->surface == nullptr && around.self().surface != nullptr) before = &around.self();
-    if (behind->surface == nullptr && around.self().surface != nullptr) behind = &around.self();
-    if (before->surface == nullptr) std::swap(before, behind);
-    if (before->surface == nullptr) {
-      step = std::max({step, unclimbable_rise(ground, around.here, before->slot),
-                       unclimbable_rise(ground, around.here, behind->slot)});
-      continue;
-    }
-    const double other = behind->surface != nullptr ? behind->height : before->height;
-    step = std::max(step, spread_of(before->height, other, around.here.z, tolerance));
+// Step of a cell in the directions in which no surface tells it.
+double lone_step(const Ground& ground, const CellsAround& cells, std::size_t lane,
+                 std::size_t slot) {
+  const Place here = mean_of(ground.grid, slot);
+  double step = 0.0;
+  for (std::size_t k = 0; k < kSelf; ++k) {
+    const std::size_t behind = kNearby - 1 - k;
+    if (cells.known[k].value[lane] > 0.0 || cells.known[behind].value[lane] > 0.0) continue;
+    step = std::max({step, unclimbable_rise(ground, here, cells.slot[k][lane]),
+                     unclimbable_rise(ground, here, cells.slot[behind][lane])});
   }
   return step;
 }
 
-// The surface that slope and roughness are told from: the cell's own, or, where those before and
-// behind it are apart by more than their roughness explains, the smoothest of the three. The cell
-// then holds the edge of a step, and a plane across it would call the step a slope.
-const LocalPlane* told_surface(const Surroundings& around) {
-  constexpr double kApart = 4.0;  // standard deviations
-  const LocalPlane* best = around.self().surface;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Nearby& before = around.nearby[k];
-    const Nearby& behind = around.nearby[8 - k];
-    if (before.surface == nullptr || behind.surface == nullptr) continue;
-    const auto [smooth, rough] = std::minmax(
-        before.surface, behind.surface,
-        [](const LocalPlane* a, const LocalPlane* b) { return a->roughness < b->roughness; });
-    const bool apart = std::abs(before.height - behind.height) > kApart * double{rough->roughness};
-    if (apart && (best == nullptr || smooth->roughness < best->roughness)) best = smooth;
+void write_lane(const Ground& ground, const CellsAround& cells, std::size_t lane, std::size_t slot,
+                const std::vector<LocalPlane>& planes, CellCosts& costs) {
+  double step = cells.step.value[lane];
+  if (cells.lone[lane] != 0) step = std::max(step, lone_step(ground, cells, lane, slot));
+  costs.step[slot] = static_cast<float>(step);
+  const auto told = static_cast<std::ptrdiff_t>(cells.told.value[lane]);
+  if (told < 0) {
+    costs.gradient_x[slot] = costs.gradient_y[slot] = costs.roughness[slot] = 0.0F;
+    costs.status[slot] = planes[slot].status;
+    return;
   }
-  return best;
-}
-
-void measure(const Ground& ground, std::size_t slot, CellCosts& costs) {
-  const Surroundings around = surroundings_of(ground, slot);
-  costs.step[slot] = static_cast<float>(step_at(ground, slot, around));
-  const LocalPlane* surface = told_surface(around);
-  const bool known = surface != nullptr;
-  costs.gradient_x[slot] = known ? surface->gradient_x : 0.0F;
-  costs.gradient_y[slot] = known ? surface->gradient_y : 0.0F;
-  costs.roughness[slot] = known ? surface->roughness : 0.0F;
-  costs.status[slot] = known ? FeatureStatus::kOk : ground.planes[slot].status;
+  const CellSurface& surface =
+      ground.surfaces[place_of(cells.slot[static_cast<std::size_t>(told)][lane])];
+  costs.gradient_x[slot] = surface.gradient_x;
+  costs.gradient_y[slot] = surface.gradient_y;
+  costs.roughness[slot] = surface.roughness;
+  costs.status[slot] = FeatureStatus::kOk;
 }
 
 // Cost from a slope part that is already known.
@@ -216,17 +352,22 @@ void compute_cell_costs(const ElevationGrid& grid, const RobotParams& robot,
   const std::size_t size = grid.observed();
   const int reach = window_reach(robot, grid.geometry.cell_size());
   fit_local_planes(grid, reach, workspace.planes);
-  workspace.surface.resize(size);
-  for (std::size_t slot = 0; slot < size; ++slot) {
-    workspace.surface[slot] = best_window(grid, reach, slot, workspace.planes);
-  }
+  find_surfaces(grid, reach, workspace);
   costs.gradient_x.resize(size);
   costs.gradient_y.resize(size);
   costs.step.resize(size);
   costs.roughness.resize(size);
   costs.status.resize(size);
-  const Ground ground{grid, workspace.planes, workspace.surface, std::tan(robot.max_climb)};
-  for (std::size_t slot = 0; slot < size; ++slot) measure(ground, slot, costs);
+  const Ground ground{grid, workspace.surfaces, std::tan(robot.max_climb)};
+  CellsAround cells;
+  for (std::size_t first = 0; first < size; first += kCellLanes) {
+    const std::size_t count = std::min(kCellLanes, size - first);
+    for (std::size_t lane = 0; lane < count; ++lane) set_lane(ground, first + lane, lane, cells);
+    measure_lanes(ground.max_gradient, grid.geometry.cell_size(), cells);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      write_lane(ground, cells, lane, first + lane, workspace.planes, costs);
+    }
+  }
 }
 
 Cost cost_of(const CellCosts& costs, Slot slot, const RobotParams& robot, double heading) {

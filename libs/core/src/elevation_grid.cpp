@@ -10,22 +10,6 @@
 namespace mrpt_terrain {
 namespace {
 
-void prepare(const GridParams& params, ElevationGridWorkspace& workspace, ElevationGrid& grid) {
-  const GridGeometry geometry(params.length, params.width, params.cell_size);
-  const auto size = static_cast<std::size_t>(geometry.array_size());
-  if (grid.geometry != geometry || grid.slot_of.size() != size) {
-    grid.geometry = geometry;
-    grid.slot_of.assign(size, kUnobserved);
-  } else {
-    // Undoing the last scan's cells costs less than filling the whole array.
-    for (const CellId id : grid.cell)
-      grid.slot_of[static_cast<std::size_t>(value_of(id))] = kUnobserved;
-  }
-  grid.cell.clear();
-  // Read eight at a time and left empty by number_observed_cells.
-  workspace.hit.resize((size + 7) / 8 * 8);
-}
-
 UnknownReason reason_for(float x, float y, float z, float max_height) {
   if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) return UnknownReason::kNotFinite;
   if (z >= max_height) return UnknownReason::kTooHigh;
@@ -143,10 +127,30 @@ void find_means(ElevationGrid& grid) {
 
 }  // namespace
 
+void clear_grid(const GridGeometry& geometry, ElevationGrid& grid) {
+  const auto size = static_cast<std::size_t>(geometry.array_size());
+  if (grid.geometry != geometry || grid.slot_of.size() != size) {
+    grid.geometry = geometry;
+    grid.slot_of.assign(size, kUnobserved);
+  } else {
+    // Undoing the last scan's cells costs less than filling the whole array.
+    for (const CellId id : grid.cell) {
+      grid.slot_of[static_cast<std::size_t>(value_of(id))] = kUnobserved;
+    }
+  }
+  grid.cell.clear();
+  grid.h_min.clear();
+  grid.h_max.clear();
+  grid.h_mean.clear();
+  grid.sums.clear();
+}
+
 ProjectionCounts build_elevation_grid(const PointsView& points, const GridParams& params,
                                       ElevationGridWorkspace& workspace, ElevationGrid& grid,
                                       PointSlots& point_slots, const float* heights) {
-  prepare(params, workspace, grid);
+  clear_grid(GridGeometry(params.length, params.width, params.cell_size), grid);
+  // Read eight at a time and left empty by number_observed_cells.
+  workspace.hit.resize((grid.slot_of.size() + 7) / 8 * 8);
   point_slots.resize(points.size);
   const ProjectionCounts counts = project(points, heights == nullptr ? points.z : heights, params,
                                           grid.geometry, workspace.hit.data(), point_slots.data());

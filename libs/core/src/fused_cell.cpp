@@ -22,12 +22,8 @@ struct Layer {
   Moments moments;  // about the centre of the cell
 };
 
-// Adds a set to another (Chan, Golub and LeVeque 1979).
-void add(const Moments& set, Moments& sum) {
-  if (sum.n == 0.0) {
-    sum = set;
-    return;
-  }
+// Adds a set to another that is not empty (Chan, Golub and LeVeque 1979).
+inline void add(const Moments& set, Moments& sum) {
   const double n = sum.n + set.n;
   const double share = set.n / n;
   const double weight = sum.n * share;
@@ -50,48 +46,51 @@ void add(const Moments& set, Moments& sum) {
 class LayerWalk {
  public:
   LayerWalk(const CellReader& reader, const Tile& tile, std::size_t place)
-      : reader_(reader), tile_(tile), next_(tile.cells[place].first) {
+      : reader_(reader), tile_(tile) {
     if (reader.params.max_age > 0.0) oldest_ = reader.map.time - reader.params.max_age;
-    skip();
+    go_to(tile.cells[place].first);
   }
 
-  [[nodiscard]] bool done() const { return next_ == kNoBin; }
+  [[nodiscard]] bool done() const { return bin_ == nullptr; }
 
   /// Number of points of the next layer, which is passed.
   double skip_layer() {
-    const std::int32_t layer = tile_.bin(next_).layer;
+    const std::int32_t layer = bin_->layer;
     double n = 0.0;
-    for (; !done() && tile_.bin(next_).layer == layer; step()) n += tile_.bin(next_).count;
+    for (; !done() && bin_->layer == layer; go_to(bin_->next)) n += bin_->count;
     return n;
   }
 
   /// The next layer, which is passed.
   Layer take() {
     Layer layer;
-    layer.number = tile_.bin(next_).layer;
-    layer.last_seen = tile_.bin(next_).last_seen;
-    layer.z_min = std::numeric_limits<double>::max();
-    layer.z_max = std::numeric_limits<double>::lowest();
+    layer.number = bin_->layer;
     const double bottom = reader_.map.lattice.bottom_of(layer.number);
-    for (; !done() && tile_.bin(next_).layer == layer.number; step()) {
-      const HeightBin& bin = tile_.bin(next_);
-      layer.z_min = std::min(layer.z_min, bottom + double{bin.z_min});
-      layer.z_max = std::max(layer.z_max, bottom + double{bin.z_max});
-      layer.scans += bin.scans;
-      layer.last_seen = std::max(layer.last_seen, bin.last_seen);
+    layer.z_min = bottom + double{bin_->z_min};
+    layer.z_max = bottom + double{bin_->z_max};
+    layer.scans = bin_->scans;
+    layer.bins = 1;
+    layer.last_seen = bin_->last_seen;
+    layer.moments = moments_of(*bin_, reader_.map.lattice);
+    for (go_to(bin_->next); !done() && bin_->layer == layer.number; go_to(bin_->next)) {
+      layer.z_min = std::min(layer.z_min, bottom + double{bin_->z_min});
+      layer.z_max = std::max(layer.z_max, bottom + double{bin_->z_max});
+      layer.scans += bin_->scans;
+      layer.last_seen = std::max(layer.last_seen, bin_->last_seen);
       ++layer.bins;
-      add(moments_of(bin, reader_.map.lattice), layer.moments);
+      add(moments_of(*bin_, reader_.map.lattice), layer.moments);
     }
     return layer;
   }
 
  private:
-  void step() {
-    next_ = tile_.bin(next_).next;
-    skip();
-  }
-  void skip() {
-    while (!done() && !counts(tile_.bin(next_))) next_ = tile_.bin(next_).next;
+  // The first bin from `k` on that counts.
+  void go_to(BinIndex k) {
+    for (; k != kNoBin; k = bin_->next) {
+      bin_ = &tile_.bin(k);
+      if (counts(*bin_)) return;
+    }
+    bin_ = nullptr;
   }
   [[nodiscard]] bool counts(const HeightBin& bin) const {
     return bin.last_seen >= oldest_ &&
@@ -100,7 +99,7 @@ class LayerWalk {
 
   const CellReader& reader_;
   const Tile& tile_;
-  BinIndex next_;
+  const HeightBin* bin_ = nullptr;
   double oldest_ = std::numeric_limits<double>::lowest();
 };
 
@@ -111,10 +110,16 @@ double points_of_fullest_layer(LayerWalk walk) {
 }
 
 // The lowest layer that is no outlier; those below are counted.
-Layer take_ground(LayerWalk& walk, double least_points, FusedCell& cell) {
+Layer take_ground(const CellReader& reader, LayerWalk& walk, FusedCell& cell) {
+  const LayerWalk whole = walk;
+  double least_points = -1.0;  // not known yet: most cells do without
   for (;;) {
     Layer layer = walk.take();
-    if (layer.moments.n >= least_points || layer.scans >= kPersistent || walk.done()) return layer;
+    if (walk.done() || layer.scans >= kPersistent) return layer;
+    if (least_points < 0.0) {
+      least_points = reader.params.least_share * points_of_fullest_layer(whole);
+    }
+    if (layer.moments.n >= least_points) return layer;
     cell.below += static_cast<std::int32_t>(layer.moments.n);
   }
 }
@@ -126,7 +131,24 @@ void count_in(const Layer& layer, FusedCell& cell) {
   add(layer.moments, cell.moments);
 }
 
-double sigma_of(const Moments& m) { return std::sqrt(m.m_zz / m.n); }
+/// The heights of a set of points.
+struct Heights {
+  double n, mean, m;  // m: sum of squared deviations
+
+  explicit Heights(const Moments& set) : n(set.n), mean(set.mean_z), m(set.m_zz) {}
+  [[nodiscard]] double sigma() const { return std::sqrt(m / n); }
+};
+
+// As the other `add`.
+void add(const Moments& set, Heights& sum) {
+  const double n = sum.n + set.n;
+  const double share = set.n / n;
+  const double weight = sum.n * share;
+  const double dz = set.mean_z - sum.mean;
+  sum.n = n;
+  sum.mean += share * dz;
+  sum.m += set.m_zz + weight * dz * dz;
+}
 
 // Whether a layer hangs over ground: above enough space known to be free, which begins at the
 // ground.
@@ -150,14 +172,18 @@ bool read_cell(const CellReader& reader, TileIndex index, const Tile& tile, std:
   if (walk.done() || !reader.map.window.contains(cell_of(index, place))) return false;
   cell = FusedCell{};
   cell.free = tile.cells[place].free;
-  const Layer ground =
-      take_ground(walk, reader.params.least_share * points_of_fullest_layer(walk), cell);
+  const Layer ground = take_ground(reader, walk, cell);
   cell.h_min = ground.z_min;
   cell.h_max = ground.z_max;
   cell.last_seen = ground.last_seen;
-  count_in(ground, cell);
-  Moments surface = ground.moments;
-  Layer top = ground;
+  cell.bins = ground.bins;
+  cell.moments = ground.moments;
+  Heights surface(ground.moments);
+  Heights top = surface;
+  const bool is_flat = walk.done();
+  const double limit = reader.params.spread_limit;
+  const double spread = limit * surface.sigma();
+  cell.low = std::max(cell.h_min, surface.mean - spread);
   while (!walk.done()) {
     const Layer layer = walk.take();
     if (hangs_over(layer, ground, cell.free, reader)) {
@@ -167,13 +193,11 @@ bool read_cell(const CellReader& reader, TileIndex index, const Tile& tile, std:
     }
     if (continues(layer, ground, reader.map.lattice)) add(layer.moments, surface);
     count_in(layer, cell);
-    top = layer;
+    top = Heights(layer.moments);
   }
-  cell.height = surface.mean_z;
-  cell.variance = surface.m_zz / surface.n;
-  const double limit = reader.params.spread_limit;
-  cell.low = std::max(cell.h_min, ground.moments.mean_z - limit * sigma_of(ground.moments));
-  cell.high = std::min(cell.h_max, top.moments.mean_z + limit * sigma_of(top.moments));
+  cell.high = std::min(cell.h_max, top.mean + (is_flat ? spread : limit * top.sigma()));
+  cell.height = surface.mean;
+  cell.variance = surface.m / surface.n;
   const Position2 centre = reader.map.lattice.centre_of(cell_of(index, place));
   cell.moments.mean_x += centre.x;
   cell.moments.mean_y += centre.y;

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "fused_access.h"
@@ -17,11 +18,6 @@ using Access = FusedGridAccess;
 
 constexpr MapCellRect kEverything{{-MapLattice::kMost, -MapLattice::kMost},
                                   {MapLattice::kMost, MapLattice::kMost}};
-
-MapCellRect intersection(const MapCellRect& a, const MapCellRect& b) {
-  return {{std::max(a.low.i, b.low.i), std::max(a.low.j, b.low.j)},
-          {std::min(a.high.i, b.high.i), std::min(a.high.j, b.high.j)}};
-}
 
 // ---- the window ----
 
@@ -309,27 +305,89 @@ void merge_cell(const Merger& self, std::int32_t first, Tile& tile, FusionCounts
   ++counts.cells;
 }
 
-void merge_all(const PosedScan& scan, const FusionParams& params, const Sorter& sorter,
-               FusedGrid& grid, FusionCounts& counts) {
+/// The tiles in reach, numbered row by row.
+struct TileRange {
+  TileIndex low;
+  std::int32_t rows, columns;
+
+  explicit TileRange(const MapCellRect& cells) : low(tile_of(cells.low)) {
+    const TileIndex high = tile_of({cells.high.i - 1, cells.high.j - 1});
+    rows = high.i - low.i + 1;
+    columns = high.j - low.j + 1;
+  }
+  [[nodiscard]] std::size_t size() const {
+    return static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
+  }
+  [[nodiscard]] std::size_t number_of(MapCell cell) const {
+    const TileIndex tile = tile_of(cell);
+    return static_cast<std::size_t>((tile.i - low.i) * columns + tile.j - low.j);
+  }
+  [[nodiscard]] TileIndex tile(std::size_t number) const {
+    const auto n = static_cast<std::int32_t>(number);
+    return {low.i + n / columns, low.j + n % columns};
+  }
+};
+
+// Lists the cells that were hit by their first bins, tile by tile, so that a tile is copied and
+// written to while it is in the caches. Leaves `head` empty.
+void sort_cells_by_tile(const Sorter& sorter, const TileRange& tiles) {
   FusionWorkspace& workspace = sorter.workspace;
-  const TileIndex low = tile_of(sorter.reach.low);
-  const TileIndex high = tile_of({sorter.reach.high.i - 1, sorter.reach.high.j - 1});
-  const auto stride = static_cast<std::size_t>(high.j - low.j + 1);
-  workspace.tiles.assign(static_cast<std::size_t>(high.i - low.i + 1) * stride, nullptr);
-  const Merger merger{scan, params, workspace.bins, Access::store(grid)};
-  for (const ScanBin& hit : workspace.bins) {
+  const std::vector<ScanBin>& bins = workspace.bins;
+  std::vector<std::int32_t>& begin = workspace.tile_begin;
+  begin.assign(tiles.size() + 1, 0);
+  workspace.cells.clear();
+  // There are at most as many cells as bins: memory for them grows with that for the bins only.
+  for (auto* list : {&workspace.cells, &workspace.by_tile}) list->reserve(bins.capacity());
+  workspace.hit.reserve(bins.capacity());
+  for (const ScanBin& hit : bins) {
     const std::int32_t first =
         std::exchange(workspace.head[sorter.head_of(hit.cell)], std::int32_t{-1});
     if (first < 0) continue;  // came with another bin of the same cell
-    const TileIndex index = tile_of(hit.cell);
-    Tile*& tile = workspace.tiles[static_cast<std::size_t>(index.i - low.i) * stride +
-                                  static_cast<std::size_t>(index.j - low.j)];
-    if (tile == nullptr) tile = &Access::writable(grid, index);
-    merge_cell(merger, first, *tile, counts);
+    workspace.cells.push_back(first);
+    ++begin[tiles.number_of(hit.cell) + 1];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  workspace.by_tile.resize(workspace.cells.size());
+  for (const std::int32_t first : workspace.cells) {
+    std::int32_t& next = begin[tiles.number_of(bins[static_cast<std::size_t>(first)].cell)];
+    workspace.by_tile[static_cast<std::size_t>(next++)] = first;
+  }
+  // Each beginning has become the next one.
+  std::rotate(begin.rbegin(), begin.rbegin() + 1, begin.rend());
+  begin.front() = 0;
+}
+
+void merge_all(const PosedScan& scan, const FusionParams& params, const Sorter& sorter,
+               FusedGrid& grid, FusionCounts& counts) {
+  FusionWorkspace& workspace = sorter.workspace;
+  const TileRange tiles(sorter.reach);
+  sort_cells_by_tile(sorter, tiles);
+  const Merger merger{scan, params, workspace.bins, Access::store(grid)};
+  for (std::size_t k = 0; k < tiles.size(); ++k) {
+    const auto begin = static_cast<std::size_t>(workspace.tile_begin[k]);
+    const auto end = static_cast<std::size_t>(workspace.tile_begin[k + 1]);
+    if (begin == end) continue;
+    Tile& tile = Access::writable(grid, tiles.tile(k));
+    for (std::size_t n = begin; n < end; ++n) {
+      const std::int32_t first = workspace.by_tile[n];
+      merge_cell(merger, first, tile, counts);
+      const MapCell cell = workspace.bins[static_cast<std::size_t>(first)].cell;
+      workspace.hit.push_back(layers_of(tile, cell));
+    }
   }
 }
 
 }  // namespace
+
+CellLayers layers_of(const Tile& tile, MapCell cell) {
+  CellLayers layers{cell, {}, false};
+  for_each_bin(tile, place_in_tile(cell), [&](const HeightBin& bin) {
+    if (layers.span.empty()) layers.span.low = bin.layer;
+    layers.several |= bin.layer != layers.span.low;
+    layers.span.high = bin.layer + 1;
+  });
+  return layers;
+}
 
 void FusedGrid::clear() {
   const MapLattice lattice = now_.lattice;
@@ -378,6 +436,7 @@ FusionCounts fuse_scan(const PosedScan& scan, const FusionParams& params,
                                       static_cast<std::size_t>(reach.high.j - reach.low.j);
   if (workspace.head.size() < cells) workspace.head.resize(cells, -1);
   workspace.bins.clear();
+  workspace.hit.clear();
   FusionCounts counts;
   sort_points(scan.points, sorter, counts);
   if (!workspace.bins.empty()) merge_all(scan, params, sorter, grid, counts);

@@ -10,20 +10,7 @@
 namespace mrpt_terrain {
 namespace {
 
-void prepare(const GridGeometry& geometry, ElevationGrid& grid, WindowCells& cells) {
-  const auto size = static_cast<std::size_t>(geometry.array_size());
-  if (grid.geometry != geometry || grid.slot_of.size() != size) {
-    grid.geometry = geometry;
-    grid.slot_of.assign(size, kUnobserved);
-  } else {
-    for (const CellId id : grid.cell)
-      grid.slot_of[static_cast<std::size_t>(value_of(id))] = kUnobserved;
-  }
-  grid.cell.clear();
-  grid.h_min.clear();
-  grid.h_max.clear();
-  grid.h_mean.clear();
-  grid.sums.clear();
+void clear(WindowCells& cells) {
   cells.height.clear();
   cells.variance.clear();
   cells.last_seen.clear();
@@ -80,6 +67,31 @@ void prefetch(const Tile& tile, std::size_t place) {
 #endif
 }
 
+// Calls visit(cell, tile) for the cells of the window that have a tile, row by row.
+template <class Visit>
+void for_each_tile_cell(const FusedSnapshot& map, const WindowFrame& frame, Visit&& visit) {
+  for (int l = 0; l < frame.geometry.cells_l(); ++l) {
+    const Tile* tile = nullptr;
+    for (int w = 0; w < frame.geometry.cells_w(); ++w) {
+      const MapCell where = frame.map_cell_of({l, w});
+      if (w == 0 || where.j % kTileSide == 0) tile = map.tiles.find(tile_of(where));
+      if (tile != nullptr) visit(CellIndex{l, w}, *tile);
+    }
+  }
+}
+
+void reserve(std::size_t n, ElevationGrid& grid, WindowCells& cells) {
+  grid.cell.reserve(n);
+  grid.h_min.reserve(n);
+  grid.h_max.reserve(n);
+  grid.h_mean.reserve(n);
+  grid.sums.reserve(n);
+  cells.height.reserve(n);
+  cells.variance.reserve(n);
+  cells.last_seen.reserve(n);
+  cells.clearance.reserve(n);
+}
+
 }  // namespace
 
 WindowFrame window_around(const MapLattice& lattice, const GridParams& params,
@@ -101,23 +113,23 @@ WindowFrame window_around(const MapLattice& lattice, const GridParams& params,
 
 void read_window(const FusedSnapshot& map, const WindowFrame& frame, const FusionParams& params,
                  ElevationGrid& grid, WindowCells& cells) {
-  prepare(frame.geometry, grid, cells);
+  clear_grid(frame.geometry, grid);
+  clear(cells);
+  // New memory is asked for once: growing step by step would copy all of it again and again.
+  std::size_t most = 0;
+  for_each_tile_cell(map, frame, [&](CellIndex at, const Tile& tile) {
+    most += tile.cells[place_in_tile(frame.map_cell_of(at))].first != kNoBin ? 1U : 0U;
+  });
+  reserve(most, grid, cells);
   const CellReader reader{map, params, frame.z + frame.max_height};
-  const GridGeometry& geometry = frame.geometry;
   FusedCell cell;
-  for (int l = 0; l < geometry.cells_l(); ++l) {
-    const Tile* tile = nullptr;
-    for (int w = 0; w < geometry.cells_w(); ++w) {
-      const MapCell where = frame.map_cell_of({l, w});
-      const TileIndex index = tile_of(where);
-      if (w == 0 || where.j % kTileSide == 0) tile = map.tiles.find(index);
-      if (tile == nullptr) continue;
-      const std::size_t place = place_in_tile(where);
-      if (place + kPrefetchAhead < kTileCells) prefetch(*tile, place + kPrefetchAhead);
-      if (!read_cell(reader, index, *tile, place, cell)) continue;
-      append(cell, frame, geometry.id_of({l, w}), grid, cells);
-    }
-  }
+  for_each_tile_cell(map, frame, [&](CellIndex at, const Tile& tile) {
+    const MapCell where = frame.map_cell_of(at);
+    const std::size_t place = place_in_tile(where);
+    if (place + kPrefetchAhead < kTileCells) prefetch(tile, place + kPrefetchAhead);
+    if (!read_cell(reader, tile_of(where), tile, place, cell)) return;
+    append(cell, frame, frame.geometry.id_of(at), grid, cells);
+  });
 }
 
 }  // namespace mrpt_terrain

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mrpt_terrain/core/local_planes.h"
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 
+#include "lanes.h"
 #include "mrpt_terrain/core/moments.h"
+#include "wide_registers.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -27,7 +27,7 @@ class Windows {
  public:
   Windows(const ElevationGrid& grid, int reach) : grid_(grid), reach_(reach) {}
 
-  CellSums about(CellIndex centre) {
+  MRPT_TERRAIN_LANES CellSums about(CellIndex centre) {
     if (centre.l != row_) start_row(centre.l);
     const int first = std::max(0, centre.w - reach_);
     const int last = std::min(grid_.geometry.cells_w() - 1, centre.w + reach_);
@@ -49,7 +49,7 @@ class Windows {
     column_of_.fill(-1);
   }
 
-  const CellSums& column_at(int w) {
+  MRPT_TERRAIN_LANES const CellSums& column_at(int w) {
     const std::size_t place = static_cast<std::size_t>(w) % kKept;
     CellSums& column = columns_[place];
     if (column_of_[place] == w) return column;
@@ -74,96 +74,216 @@ class Windows {
   std::array<CellSums, kKept> columns_{};
 };
 
+// Sums of a window per lane, and what becomes of them.
+struct WindowLanes {
+  LaneArray n, x, y, z, xx, xy, xz, yy, yz, zz;
+  LaneArray mean_x, mean_y, mean_z, roughness, gradient_x, gradient_y;
+  std::int64_t on_a_line[kCellLanes] = {};  // not 0: the points are
+  std::int32_t cells[kCellLanes] = {};
+};
+
+void set_lane(const CellSums& window, std::size_t lane, WindowLanes& lanes) {
+  const MomentSums& s = window.sums;
+  lanes.n.value[lane] = s.n;
+  lanes.x.value[lane] = s.x;
+  lanes.y.value[lane] = s.y;
+  lanes.z.value[lane] = s.z;
+  lanes.xx.value[lane] = s.xx;
+  lanes.xy.value[lane] = s.xy;
+  lanes.xz.value[lane] = s.xz;
+  lanes.yy.value[lane] = s.yy;
+  lanes.yz.value[lane] = s.yz;
+  lanes.zz.value[lane] = s.zz;
+  lanes.cells[lane] = window.cells;
+}
+
+// Symmetric matrices, and vectors, of lanes.
+struct SymmetricLanes {
+  DoubleLanes xx, xy, xz, yy, yz, zz;
+};
+struct VectorLanes {
+  DoubleLanes x, y, z;
+};
+
+// As Moments::covariance of moments_from, with one division.
+MRPT_TERRAIN_LANES void find_covariance(WindowLanes& window, SymmetricLanes& c) {
+  DoubleLanes n, x, y, z;
+  load(window.n, n);
+  load(window.x, x);
+  load(window.y, y);
+  load(window.z, z);
+  load(window.xx, c.xx);
+  load(window.xy, c.xy);
+  load(window.xz, c.xz);
+  load(window.yy, c.yy);
+  load(window.yz, c.yz);
+  load(window.zz, c.zz);
+  const DoubleLanes zero{};
+  const DoubleLanes share = 1.0 / n;
+  const DoubleLanes mean_x = x * share;
+  const DoubleLanes mean_y = y * share;
+  const DoubleLanes mean_z = z * share;
+  c.xx = c.xx - mean_x * x;
+  c.yy = c.yy - mean_y * y;
+  c.zz = c.zz - mean_z * z;
+  // Rounding may leave a sum of squares a hair below zero.
+  c.xx = (c.xx > zero ? c.xx : zero) * share;
+  c.yy = (c.yy > zero ? c.yy : zero) * share;
+  c.zz = (c.zz > zero ? c.zz : zero) * share;
+  c.xy = (c.xy - mean_x * y) * share;
+  c.xz = (c.xz - mean_x * z) * share;
+  c.yz = (c.yz - mean_y * z) * share;
+  store(mean_x, window.mean_x);
+  store(mean_y, window.mean_y);
+  store(mean_z, window.mean_z);
+}
+
 // Coefficients of the characteristic polynomial of a covariance: x^3 - trace x^2 + minors x -
 // determinant.
 struct Invariants {
-  double trace, minors, determinant;
+  DoubleLanes trace, minors, determinant;
 };
-Invariants invariants_of(const Eigen::Matrix3d& a) {
-  const double minor_x = a(1, 1) * a(2, 2) - a(1, 2) * a(1, 2);
-  const double minor_y = a(0, 0) * a(2, 2) - a(0, 2) * a(0, 2);
-  const double minor_z = a(0, 0) * a(1, 1) - a(0, 1) * a(0, 1);
-  const double determinant = a(0, 0) * minor_x + a(0, 1) * (a(0, 2) * a(1, 2) - a(0, 1) * a(2, 2)) +
-                             a(0, 2) * (a(0, 1) * a(1, 2) - a(0, 2) * a(1, 1));
-  return {a.trace(), minor_x + minor_y + minor_z, determinant};
+MRPT_TERRAIN_LANES void find_invariants(const SymmetricLanes& a, Invariants& of) {
+  const DoubleLanes minor_x = a.yy * a.zz - a.yz * a.yz;
+  const DoubleLanes minor_y = a.xx * a.zz - a.xz * a.xz;
+  const DoubleLanes minor_z = a.xx * a.yy - a.xy * a.xy;
+  of.trace = a.xx + (a.yy + a.zz);
+  of.minors = minor_x + minor_y + minor_z;
+  of.determinant =
+      a.xx * minor_x + a.xy * (a.xz * a.yz - a.xy * a.zz) + a.xz * (a.xy * a.yz - a.xz * a.yy);
 }
 
 // Newton's method on the characteristic polynomial. From 0, which is left of all roots, it climbs
 // to the smallest one without overshooting. No sines as in the closed form: those of the C library
 // differ between processors.
-double smallest_eigenvalue(const Invariants& of) {
+MRPT_TERRAIN_LANES void find_smallest_eigenvalue(const Invariants& of, DoubleLanes& root) {
   constexpr int kMaxSteps = 30;
-  double root = 0.0;
+  const DoubleLanes zero{};
+  root = zero;
+  MaskLanes climbs = zero == zero;
   for (int k = 0; k < kMaxSteps; ++k) {
-    const double value = ((root - of.trace) * root + of.minors) * root - of.determinant;
-    const double slope = (3.0 * root - 2.0 * of.trace) * root + of.minors;
-    if (!(value < 0.0 && slope > 0.0)) break;
-    const double step = -value / slope;
-    root += step;
-    if (step <= 1e-3 * root) break;  // convergence is quadratic: 1e-6 is left
+    const DoubleLanes value = ((root - of.trace) * root + of.minors) * root - of.determinant;
+    const DoubleLanes slope = (3.0 * root - 2.0 * of.trace) * root + of.minors;
+    climbs &= (value < zero) & (slope > zero);
+    const DoubleLanes step = -value / slope;
+    root = climbs ? root + step : root;
+    climbs &= step > 1e-3 * root;  // convergence is quadratic: 1e-6 is left
+    if (!any_of(climbs)) break;
   }
-  return root;
 }
 
 // Whether the middle eigenvalue is at least `least`, from sum and product of the upper two.
-bool middle_eigenvalue_reaches(double least, const Invariants& of, double smallest) {
-  const double sum = of.trace - smallest;
-  const double product = of.minors - smallest * sum;
-  return sum >= 2.0 * least && product - least * sum + least * least >= 0.0;
+MRPT_TERRAIN_LANES void middle_eigenvalue_reaches(double least, const Invariants& of,
+                                                  const DoubleLanes& smallest, MaskLanes& reaches) {
+  const DoubleLanes zero{};
+  const DoubleLanes sum = of.trace - smallest;
+  const DoubleLanes product = of.minors - smallest * sum;
+  reaches = (sum >= zero + 2.0 * least) & (product - least * sum + least * least >= zero);
+}
+
+MRPT_TERRAIN_LANES void cross(const VectorLanes& a, const VectorLanes& b, VectorLanes& c) {
+  c.x = a.y * b.z - a.z * b.y;
+  c.y = a.z * b.x - a.x * b.z;
+  c.z = a.x * b.y - a.y * b.x;
+}
+
+MRPT_TERRAIN_LANES void take_longer(const VectorLanes& other, VectorLanes& best,
+                                    DoubleLanes& square) {
+  const DoubleLanes other_square = other.x * other.x + (other.y * other.y + other.z * other.z);
+  const MaskLanes longer = other_square > square;
+  best.x = longer ? other.x : best.x;
+  best.y = longer ? other.y : best.y;
+  best.z = longer ? other.z : best.z;
+  square = longer ? other_square : square;
 }
 
 // Eigenvector, of any length and with z >= 0; zero where it is not unique.
-Eigen::Vector3d eigenvector(const Eigen::Matrix3d& a, double eigenvalue) {
-  const Eigen::Matrix3d b = a - eigenvalue * Eigen::Matrix3d::Identity();
-  Eigen::Vector3d best = b.col(0).cross(b.col(1));
-  for (const Eigen::Vector3d& other :
-       {Eigen::Vector3d(b.col(0).cross(b.col(2))), Eigen::Vector3d(b.col(1).cross(b.col(2)))}) {
-    if (other.squaredNorm() > best.squaredNorm()) best = other;
-  }
-  return best.z() < 0.0 ? Eigen::Vector3d(-best) : best;
+MRPT_TERRAIN_LANES void find_eigenvector(const SymmetricLanes& a, const DoubleLanes& eigenvalue,
+                                         VectorLanes& best, DoubleLanes& square) {
+  const VectorLanes first{a.xx - eigenvalue, a.xy, a.xz};
+  const VectorLanes second{a.xy, a.yy - eigenvalue, a.yz};
+  const VectorLanes third{a.xz, a.yz, a.zz - eigenvalue};
+  VectorLanes other;
+  cross(first, second, best);
+  square = best.x * best.x + (best.y * best.y + best.z * best.z);
+  cross(first, third, other);
+  take_longer(other, best, square);
+  cross(second, third, other);
+  take_longer(other, best, square);
+  const DoubleLanes zero{};
+  const MaskLanes down = best.z < zero;
+  best.x = down ? -best.x : best.x;
+  best.y = down ? -best.y : best.y;
+  best.z = down ? -best.z : best.z;
 }
 
-void set_gradient(const Eigen::Vector3d& normal, LocalPlane& plane) {
-  const double level2 = normal.x() * normal.x() + normal.y() * normal.y();
-  const double upright = kSteepestGradient * normal.z();
-  const bool steep = level2 > upright * upright;
-  const double divisor = steep ? std::sqrt(level2) / kSteepestGradient : normal.z();
-  const double scale = -1.0 / divisor;
-  plane.gradient_x = static_cast<float>(normal.x() * scale);
-  plane.gradient_y = static_cast<float>(normal.y() * scale);
+MRPT_TERRAIN_LANES void store_gradient(const VectorLanes& normal, WindowLanes& window) {
+  const DoubleLanes level2 = normal.x * normal.x + normal.y * normal.y;
+  const DoubleLanes upright = kSteepestGradient * normal.z;
+  const MaskLanes steep = level2 > upright * upright;
+  DoubleLanes level = level2;
+  take_roots(level);
+  const DoubleLanes divisor = steep ? level / kSteepestGradient : normal.z;
+  const DoubleLanes scale = -1.0 / divisor;
+  store(normal.x * scale, window.gradient_x);
+  store(normal.y * scale, window.gradient_y);
 }
 
-// As Moments::covariance, with one division.
-Eigen::Matrix3d covariance_of(const Moments& m) {
-  const double share = 1.0 / m.n;
-  Eigen::Matrix3d c;
-  c << m.m_xx, m.m_xy, m.m_xz,  //
-      m.m_xy, m.m_yy, m.m_yz,   //
-      m.m_xz, m.m_yz, m.m_zz;
-  return c * share;
+MRPT_TERRAIN_WIDE_REGISTERS
+void fit_planes(double least_spread, WindowLanes& window) {
+  SymmetricLanes covariance;
+  find_covariance(window, covariance);
+  Invariants invariants;
+  find_invariants(covariance, invariants);
+  DoubleLanes across_plane;
+  find_smallest_eigenvalue(invariants, across_plane);
+  MaskLanes spread;
+  middle_eigenvalue_reaches(least_spread, invariants, across_plane, spread);
+  VectorLanes normal;
+  DoubleLanes square;
+  find_eigenvector(covariance, across_plane, normal, square);
+  store_gradient(normal, window);
+  take_roots(across_plane);
+  store(across_plane, window.roughness);
+  const DoubleLanes zero{};
+  const MaskLanes on_a_line = ~spread | (square == zero);
+  std::memcpy(window.on_a_line, &on_a_line, sizeof(on_a_line));
 }
 
-LocalPlane plane_through(const CellSums& window, std::int32_t least_cells, double least_spread) {
+LocalPlane plane_of(const WindowLanes& window, std::size_t lane, std::int32_t least_cells) {
   LocalPlane plane;
-  plane.cells = window.cells;
-  if (window.cells < least_cells) return plane;
-  const Moments moments = moments_from(window.sums);
-  const Eigen::Matrix3d covariance = covariance_of(moments);
-  const Invariants invariants = invariants_of(covariance);
-  const double across_plane = smallest_eigenvalue(invariants);
-  const Eigen::Vector3d normal = eigenvector(covariance, across_plane);
-  if (!middle_eigenvalue_reaches(least_spread, invariants, across_plane) ||
-      normal.squaredNorm() == 0.0) {
+  plane.cells = window.cells[lane];
+  if (plane.cells < least_cells) return plane;
+  if (window.on_a_line[lane] != 0) {
     plane.status = FeatureStatus::kDegenerate;
     return plane;
   }
   plane.status = FeatureStatus::kOk;
-  plane.x = moments.mean_x;
-  plane.y = moments.mean_y;
-  plane.z = moments.mean_z;
-  plane.roughness = static_cast<float>(std::sqrt(across_plane));
-  set_gradient(normal, plane);
+  plane.x = window.mean_x.value[lane];
+  plane.y = window.mean_y.value[lane];
+  plane.z = window.mean_z.value[lane];
+  plane.roughness = static_cast<float>(window.roughness.value[lane]);
+  plane.gradient_x = static_cast<float>(window.gradient_x.value[lane]);
+  plane.gradient_y = static_cast<float>(window.gradient_y.value[lane]);
   return plane;
+}
+
+MRPT_TERRAIN_WIDE_REGISTERS
+void fit_all(const ElevationGrid& grid, int reach, double least_spread,
+             std::vector<LocalPlane>& planes) {
+  Windows windows(grid, reach);
+  WindowLanes lanes;
+  for (std::size_t first = 0; first < grid.observed(); first += kCellLanes) {
+    const std::size_t count = std::min(kCellLanes, grid.observed() - first);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      const CellIndex centre = grid.geometry.index_of(grid.cell[first + lane]);
+      set_lane(windows.about(centre), lane, lanes);
+    }
+    fit_planes(least_spread, lanes);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      planes[first + lane] = plane_of(lanes, lane, 2 * reach + 1);
+    }
+  }
 }
 
 }  // namespace
@@ -174,11 +294,7 @@ void fit_local_planes(const ElevationGrid& grid, int reach, std::vector<LocalPla
   // A quarter of the variance of the centres of 2 r + 1 rows, r (r + 1) / 3 squared cells.
   const double least_spread = 0.25 * reach * (reach + 1) / 3.0 * cell_size * cell_size;
   planes.resize(grid.observed());
-  Windows windows(grid, reach);
-  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
-    const CellSums window = windows.about(grid.geometry.index_of(grid.cell[slot]));
-    planes[slot] = plane_through(window, 2 * reach + 1, least_spread);
-  }
+  fit_all(grid, reach, least_spread, planes);
 }
 
 }  // namespace mrpt_terrain

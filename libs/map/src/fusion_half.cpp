@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 #include "mrpt_terrain/core/tile_state.h"
 
@@ -13,53 +14,63 @@ namespace {
 // Layers below and above a cell's bins that tell where a free span begins and ends.
 constexpr std::int32_t kMoreLayers = 2;
 
-/// Layers of the bins of a cell.
-struct CellLayers {
-  LayerSpan span;
-  bool several = false;
-};
-
-CellLayers layers_of(const FusedSnapshot& map, MapCell cell) {
-  CellLayers result;
-  const Tile* tile = map.tiles.find(tile_of(cell));
-  if (tile == nullptr) return result;
-  for_each_bin(*tile, place_in_tile(cell), [&](const HeightBin& bin) {
-    if (result.span.empty()) result.span.low = bin.layer;
-    result.several |= bin.layer != result.span.low;
-    result.span.high = bin.layer + 1;
-  });
-  return result;
+ColumnRequest column_of(const CellLayers& layers) {
+  return {layers.cell, {layers.span.low - kMoreLayers, layers.span.high + kMoreLayers}};
 }
 
-/// Cells that the OctoMap has something to say about: those hit by the scan that hold more than one
-/// layer, and those over voxels that it freed. The same number of cells is looked at however large
-/// the map is.
-void find_columns(const OctreeHalf& octree, FusionHalf& fusion) {
-  const FusedSnapshot& map = fusion.grid.now();
-  const auto add = [&](MapCell cell, bool freed) {
-    const CellLayers layers = layers_of(map, cell);
-    if (layers.span.empty() || !(layers.several || freed)) return;
-    fusion.columns.push_back(
-        {cell, {layers.span.low - kMoreLayers, layers.span.high + kMoreLayers}});
-  };
-  fusion.columns.clear();
-  for (const ScanBin& bin : fusion.fusing.bins) add(bin.cell, false);
+// Adds the cells over the voxels that the OctoMap has freed; some of them more than once.
+void add_freed_columns(const OctreeHalf& octree, const FusedSnapshot& map,
+                       std::vector<ColumnRequest>& columns) {
   const double voxels = std::round(map.lattice.cell_size() / map.lattice.layer_height());
   for (const octree::FreedCube& cube : octree.freed()) {
     const auto cell_of = [&](std::size_t axis, int offset) {
       return floor_to_int((cube.key[axis] - 0x8000 + offset) / voxels);
     };
     for (std::int32_t i = cell_of(0, 0); i <= cell_of(0, cube.cells - 1); ++i) {
-      for (std::int32_t j = cell_of(1, 0); j <= cell_of(1, cube.cells - 1); ++j) add({i, j}, true);
+      for (std::int32_t j = cell_of(1, 0); j <= cell_of(1, cube.cells - 1); ++j) {
+        const Tile* tile = map.tiles.find(tile_of({i, j}));
+        if (tile == nullptr) continue;
+        const CellLayers layers = layers_of(*tile, {i, j});
+        if (!layers.span.empty()) columns.push_back(column_of(layers));
+      }
     }
   }
-  const auto by_cell = [](const ColumnRequest& a, const ColumnRequest& b) {
-    return a.cell < b.cell;
+}
+
+// Sorts by one of the coordinates; those that are equal keep their order.
+void sort_by(std::int32_t MapCell::*coordinate, const std::vector<ColumnRequest>& columns,
+             std::vector<std::size_t>& begin, std::vector<ColumnRequest>& sorted) {
+  sorted.resize(columns.size());
+  if (columns.empty()) return;
+  const auto before = [coordinate](const ColumnRequest& a, const ColumnRequest& b) {
+    return a.cell.*coordinate < b.cell.*coordinate;
   };
+  const auto [first, last] = std::minmax_element(columns.begin(), columns.end(), before);
+  const std::int32_t low = first->cell.*coordinate;
+  begin.assign(static_cast<std::size_t>(last->cell.*coordinate - low) + 2, 0);
+  const auto number_of = [&](const ColumnRequest& column) {
+    return static_cast<std::size_t>(column.cell.*coordinate - low);
+  };
+  for (const ColumnRequest& column : columns) ++begin[number_of(column) + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  for (const ColumnRequest& column : columns) sorted[begin[number_of(column)]++] = column;
+}
+
+/// Cells that the OctoMap has something to say about: those hit by the scan that hold more than one
+/// layer, and those over voxels that it freed. The same number of cells is looked at however large
+/// the map is.
+void find_columns(const OctreeHalf& octree, FusionHalf& fusion) {
+  std::vector<ColumnRequest>& columns = fusion.columns;
+  columns.clear();
+  for (const CellLayers& layers : fusion.fusing.hit) {
+    if (layers.several) columns.push_back(column_of(layers));
+  }
+  add_freed_columns(octree, fusion.grid.now(), columns);
+  // By whole numbers within reach of a scan: in less time than by comparing.
+  sort_by(&MapCell::j, columns, fusion.sort_begin, fusion.sorted_columns);
+  sort_by(&MapCell::i, fusion.sorted_columns, fusion.sort_begin, columns);
   const auto same = [](const ColumnRequest& a, const ColumnRequest& b) { return a.cell == b.cell; };
-  std::sort(fusion.columns.begin(), fusion.columns.end(), by_cell);
-  fusion.columns.erase(std::unique(fusion.columns.begin(), fusion.columns.end(), same),
-                       fusion.columns.end());
+  columns.erase(std::unique(columns.begin(), columns.end(), same), columns.end());
 }
 
 }  // namespace

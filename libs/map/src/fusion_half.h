@@ -20,6 +20,8 @@ struct FusionHalf {
   FusionWorkspace fusing;
   FusedDescriptionWorkspace describing;
   std::vector<ColumnRequest> columns;
+  std::vector<ColumnRequest> sorted_columns;
+  std::vector<std::size_t> sort_begin;
   FreeSpaceGrid free;
 };
 

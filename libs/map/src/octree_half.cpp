@@ -20,17 +20,17 @@ std::uint16_t key_of(std::int32_t voxel) {
   return static_cast<std::uint16_t>(std::clamp(voxel + 0x8000, 0, 0xFFFF));
 }
 
-/// Whether all voxels of a layer of a cell are known to be free.
-bool is_free(const octomap::OcTree& tree, MapCell cell, std::int32_t layer, int voxels) {
+/// 64 layers of a cell from one on, a bit each: whether all of their voxels are known to be free.
+std::uint64_t free_layers(const octree::FreeCells& free, MapCell cell, std::int32_t layer,
+                          int voxels) {
+  std::uint64_t layers = ~std::uint64_t{0};
   for (int x = 0; x < voxels; ++x) {
     for (int y = 0; y < voxels; ++y) {
-      const octomap::OcTreeKey key(key_of(cell.i * voxels + x), key_of(cell.j * voxels + y),
-                                   key_of(layer));
-      const octomap::OcTreeNode* node = tree.search(key);
-      if (node == nullptr || tree.isNodeOccupied(node)) return false;
+      layers &=
+          free.column(key_of(cell.i * voxels + x), key_of(cell.j * voxels + y), key_of(layer));
     }
   }
-  return true;
+  return layers;
 }
 
 }  // namespace
@@ -43,7 +43,9 @@ OctreeHalf::OctreeHalf(const MapCreationParams& creation, const OctreeInsertPara
   tree_.setClampingThresMax(insert.clamping_max);
 }
 
-OctreeHalf::OctreeHalf(const OctreeHalf& other) : params_(other.params_), tree_(*other.copy()) {}
+OctreeHalf::OctreeHalf(const OctreeHalf& other) : params_(other.params_), tree_(*other.copy()) {
+  free_.assign(tree_);
+}
 
 void OctreeHalf::insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot) {
   const auto in_map = [&T_map_robot](float x, float y, float z) -> Eigen::Vector3f {
@@ -70,7 +72,7 @@ void OctreeHalf::insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_rob
   const std::lock_guard lock(mutex_);
   copy_.reset();
   octree::insert_scan({x_.data(), y_.data(), z_.data(), n}, origins, options, workspace_, tree_,
-                      &freed_);
+                      &freed_, &free_);
 }
 
 void OctreeHalf::find_free_space(const MapLattice& lattice,
@@ -82,11 +84,16 @@ void OctreeHalf::find_free_space(const MapLattice& lattice,
   grid.time = time;
   for (const ColumnRequest& column : columns) {
     bool named = false;
-    for (std::int32_t layer = column.layers.low; layer < column.layers.high; ++layer) {
-      if (!is_free(tree_, column.cell, layer, voxels)) continue;
-      if (!named) grid.begin_cell(column.cell);
-      named = true;
-      grid.add_span({layer, layer + 1});
+    for (std::int32_t low = column.layers.low; low < column.layers.high; low += 64) {
+      std::uint64_t layers = free_layers(free_, column.cell, low, voxels);
+      const std::int32_t left = column.layers.high - low;
+      if (left < 64) layers &= (std::uint64_t{1} << left) - 1;
+      if (layers != 0 && !named) grid.begin_cell(column.cell);
+      named = named || layers != 0;
+      for (; layers != 0; layers &= layers - 1) {
+        const std::int32_t layer = low + static_cast<std::int32_t>(__builtin_ctzll(layers));
+        grid.add_span({layer, layer + 1});
+      }
     }
   }
 }
@@ -97,7 +104,9 @@ void OctreeHalf::trim(const MapLattice& lattice, const MapCellRect& window) {
       {key_of(window.low.i * voxels), key_of(window.low.j * voxels), 0},
       {key_of(window.high.i * voxels - 1), key_of(window.high.j * voxels - 1), 0xFFFF}};
   const std::lock_guard lock(mutex_);
-  if (octree::trim_tree(keys, tree_).removed != 0) copy_.reset();
+  if (octree::trim_tree(keys, tree_).removed == 0) return;
+  copy_.reset();
+  free_.trim(keys);
 }
 
 std::shared_ptr<const octomap::OcTree> OctreeHalf::copy() const {
@@ -110,6 +119,7 @@ void OctreeHalf::clear() {
   const std::lock_guard lock(mutex_);
   copy_.reset();
   tree_.clear();
+  free_.clear();
 }
 
 std::string OctreeHalf::bytes_of(const octomap::OcTree& tree) {
@@ -122,6 +132,7 @@ void OctreeHalf::restore(const std::string& bytes) {
   const std::lock_guard lock(mutex_);
   copy_.reset();
   tree_.clear();
+  free_.clear();
   if (bytes.empty()) return;
   std::istringstream in(bytes);
   tree_.readData(in);
@@ -129,6 +140,7 @@ void OctreeHalf::restore(const std::string& bytes) {
     tree_.clear();
     throw std::runtime_error("the OctoMap in it is cut off");
   }
+  free_.assign(tree_);
 }
 
 }  // namespace mrpt_terrain

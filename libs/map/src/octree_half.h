@@ -15,6 +15,7 @@
 #include "mrpt_terrain/core/map_lattice.h"
 #include "mrpt_terrain/io/scan.h"
 #include "mrpt_terrain/map/map_params.h"
+#include "mrpt_terrain/octree/free_cells.h"
 #include "mrpt_terrain/octree/insert_scan.h"
 
 namespace mrpt_terrain {
@@ -65,6 +66,7 @@ class OctreeHalf {
   std::vector<octree::FreedCube> freed_;
   mutable std::mutex mutex_;
   octomap::OcTree tree_;
+  octree::FreeCells free_;                               ///< of `tree_`
   mutable std::shared_ptr<const octomap::OcTree> copy_;  ///< of `tree_` as it is; else null
 };
 

@@ -30,14 +30,18 @@ bool is_supported(const octomap::OcTree& tree) {
 
 InsertionResult insert_scan(const RayEnds& ends, const RayOrigins& origins,
                             const InsertionOptions& options, InsertionWorkspace& workspace,
-                            octomap::OcTree& tree, std::vector<FreedCube>* freed) {
+                            octomap::OcTree& tree, std::vector<FreedCube>* freed, FreeCells* free) {
   assert(origins.origins != nullptr && origins.size > 0);
   if (freed != nullptr) freed->clear();
-  if (!is_supported(tree)) return insert_with_octomap(ends, origins, options, tree);
+  if (!is_supported(tree)) {
+    const InsertionResult result = insert_with_octomap(ends, origins, options, tree);
+    if (free != nullptr) free->assign(tree);
+    return result;
+  }
   CollectionWorkspace& collection = workspace.memory().collection;
   const InsertionResult result =
       collect_cells<Ties::kAsOctomap>(ends, origins, options, tree.getResolution(), collection);
-  update_tree(collection.cells, tree, freed);
+  update_tree(collection.cells, tree, freed, free);
   return result;
 }
 

@@ -9,9 +9,10 @@ namespace mrpt_terrain::octree {
 
 bool CellGrid::find_key(const Place& place, CellKey& key) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double cell = std::floor(cells_per_metre * double{place[axis]});
+    const double cell = cells_per_metre * double{place[axis]};
     if (!(cell >= -32768.0 && cell < 32768.0)) return false;
-    key[axis] = static_cast<std::uint16_t>(static_cast<int>(cell) + 32768);
+    const int truncated = static_cast<int>(cell);
+    key[axis] = static_cast<std::uint16_t>(truncated - (cell < truncated ? 1 : 0) + 32768);
   }
   return true;
 }

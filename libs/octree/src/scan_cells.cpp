@@ -18,6 +18,7 @@ ScanCells::ScanCells() : free_(1), occupied_(1), occupied_of_(1), table_(kFirstT
 
 void ScanCells::clear() {
   tiles_.clear();
+  recent_.fill({});
   free_.resize(1);
   occupied_.resize(1);
   occupied_of_.resize(1);
@@ -25,7 +26,7 @@ void ScanCells::clear() {
 }
 
 void ScanCells::mark_occupied(CellCode code) {
-  CellTile& tile = tiles_[tile_number(code >> 18)];
+  CellTile& tile = tiles_[number_of(code >> 18)];
   std::uint32_t block = tile.block[code >> 9 & 511];
   if (block == 0) block = add_block(tile, code);
   tile.occupied[code >> 15 & 7] |= std::uint64_t{1} << (code >> 9 & 63);

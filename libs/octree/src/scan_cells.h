@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -31,19 +32,9 @@ class ScanCells {
   /// Forgets all cells and keeps the memory.
   void clear();
 
-  /// The tile in which a ray is, kept from one call to the next.
-  struct Cursor {
-    CellCode tile_code = ~CellCode{0};
-    std::size_t tile = 0;
-  };
-
   /// Marks cells of one word as free: the bits of `word`, in the word of cell `code`.
-  void mark_free(CellCode code, std::uint64_t word, Cursor& cursor) {
-    if (code >> 18 != cursor.tile_code) {
-      cursor.tile_code = code >> 18;
-      cursor.tile = tile_number(cursor.tile_code);
-    }
-    CellTile& tile = tiles_[cursor.tile];
+  void mark_free(CellCode code, std::uint64_t word) {
+    CellTile& tile = tiles_[number_of(code >> 18)];
     std::uint32_t block = tile.block[code >> 9 & 511];
     if (block == 0) block = add_block(tile, code);
     free_[block].words[code >> 6 & 7] |= word;
@@ -60,11 +51,25 @@ class ScanCells {
   }
 
  private:
+  // Tiles that were met lately, one for each place in a cube of 4^3 tiles: rays that walk side by
+  // side find theirs here.
+  struct RecentTile {
+    CellCode code = ~CellCode{0};
+    std::size_t number = 0;
+  };
+  static constexpr std::size_t kRecentTiles = 64;
+
+  [[nodiscard]] std::size_t number_of(CellCode tile_code) {
+    RecentTile& recent = recent_[tile_code % kRecentTiles];
+    if (recent.code != tile_code) recent = {tile_code, tile_number(tile_code)};
+    return recent.number;
+  }
   [[nodiscard]] std::size_t tile_number(CellCode tile_code);
   std::uint32_t add_block(CellTile& tile, CellCode code);
   void double_table();
 
   std::vector<CellTile> tiles_;
+  std::array<RecentTile, kRecentTiles> recent_;
   std::vector<CellBlock> free_;             // of each block; the first stands for no block
   std::vector<CellBlock> occupied_;         // of a few blocks; the first is empty
   std::vector<std::uint32_t> occupied_of_;  // per block: its number among `occupied_`

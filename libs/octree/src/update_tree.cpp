@@ -148,14 +148,15 @@ constexpr int kTreeDepth = 16;
 template <bool kReport>
 class Passage {
  public:
-  Passage(octomap::OcTree& tree, std::vector<FreedCube>* freed)
+  Passage(octomap::OcTree& tree, std::vector<FreedCube>* freed, FreeCells* free)
       : tree_(tree),
         hit_(tree.getProbHitLog()),
         miss_(tree.getProbMissLog()),
         least_(tree.getClampingThresMinLog()),
         greatest_(tree.getClampingThresMaxLog()),
         threshold_(tree.getOccupancyThresLog()),
-        freed_(freed) {}
+        freed_(freed),
+        free_(free) {}
 
   void update(const ScanCells& cells, const CellTile& tile) {
     OcTreeNode*& root = root_of(tree_);
@@ -188,13 +189,18 @@ class Passage {
     }
     node.setLogOdds(value);
     if constexpr (kReport) {
-      if (!is_new && before >= threshold_ && !(value >= threshold_)) report(code, Marks::kLevel);
+      const bool was_free = !is_new && before < threshold_;
+      const bool is_free = value < threshold_;
+      if (was_free != is_free) report(code, Marks::kLevel, is_new, is_free);
     }
     return true;
   }
 
-  void report(CellCode code, int level) {
-    freed_->push_back({key_of(code << 3 * level), static_cast<std::uint16_t>(1 << level)});
+  void report(CellCode code, int level, bool is_new, bool is_free) {
+    const CellKey low = key_of(code << 3 * level);
+    if (free_ != nullptr) free_->set(low, level, is_free);
+    if (freed_ == nullptr || is_new || !is_free) return;
+    freed_->push_back({low, static_cast<std::uint16_t>(1 << level)});
   }
 
   // Whether no marked cell changes, if all cells of the cube have the value of the node.
@@ -278,16 +284,18 @@ class Passage {
   octomap::OcTree& tree_;
   float hit_, miss_, least_, greatest_, threshold_;  // log-odds
   std::vector<FreedCube>* freed_;
+  FreeCells* free_;
 };
 
 }  // namespace
 
-void update_tree(const ScanCells& cells, octomap::OcTree& tree, std::vector<FreedCube>* freed) {
-  if (freed == nullptr) {
-    Passage<false> passage(tree, nullptr);
+void update_tree(const ScanCells& cells, octomap::OcTree& tree, std::vector<FreedCube>* freed,
+                 FreeCells* free) {
+  if (freed == nullptr && free == nullptr) {
+    Passage<false> passage(tree, nullptr, nullptr);
     for (const CellTile& tile : cells.tiles()) passage.update(cells, tile);
   } else {
-    Passage<true> passage(tree, freed);
+    Passage<true> passage(tree, freed, free);
     for (const CellTile& tile : cells.tiles()) passage.update(cells, tile);
   }
 }

@@ -12,6 +12,8 @@ namespace mrpt_terrain::octree {
 
 /// Gives every marked cell its update, occupied before free, in one passage through the tree.
 /// \param[out] freed may be null; cells that went from occupied to free are appended
-void update_tree(const ScanCells& cells, octomap::OcTree& tree, std::vector<FreedCube>* freed);
+/// \param[in,out] free may be null; the free cells of the tree
+void update_tree(const ScanCells& cells, octomap::OcTree& tree, std::vector<FreedCube>* freed,
+                 FreeCells* free);
 
 }  // namespace mrpt_terrain::octree

@@ -14,19 +14,10 @@ bool goes_first(double a, double b) {
   return kTies == Ties::kAsOctomap ? a < b : a <= b;
 }
 
-// Steps after which a lane leaves its word, from those at which it entered one, and their number.
-std::uint32_t last_in_word(std::uint32_t entered, std::uint64_t steps) {
-  if (steps == 0) return 0;
-  const auto last = std::uint32_t{1} << (steps - 1);
-  return (entered >> 1 & (last - 1)) | last;
-}
-
 template <Ties kTies>
-void walk_plain(Lanes& lanes, Trail& trail) {
+void walk_plain(Lanes& lanes, Marks& marks) {
+  marks.size = 0;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    std::uint32_t entered = 0;
-    std::uint64_t steps = 0;
-    std::uint64_t word = 0;
     double t[3] = {lanes.crossing[0][lane], lanes.crossing[1][lane], lanes.crossing[2][lane]};
     bool alive = (lanes.alive >> lane & 1) != 0;
     for (std::size_t k = 0; alive && k < kChunk; ++k) {
@@ -45,96 +36,171 @@ void walk_plain(Lanes& lanes, Trail& trail) {
       const double length = lanes.length[lane];
       alive = cell != lanes.last[lane] && !(t[0] > length && t[1] > length && t[2] > length);
       const bool enters = (cell ^ before) > 63;
-      entered |= static_cast<std::uint32_t>(enters) << k;
+      std::uint64_t& word = lanes.word[lane];
+      if (enters || !alive) {
+        marks.cell[marks.size] = before;
+        marks.word[marks.size++] = word;
+      }
       word = (enters ? 0 : word) | std::uint64_t{1} << (cell & 63);
-      trail.cell[k][lane] = cell;
-      trail.word[k][lane] = word;
-      steps += alive ? 1 : 0;
     }
-    trail.complete[lane] = last_in_word(entered, steps);
     for (std::size_t axis = 0; axis < 3; ++axis) lanes.crossing[axis][lane] = t[axis];
-    if (!alive) lanes.alive = static_cast<std::uint8_t>(lanes.alive & ~(1U << lane));
+    if (!alive) lanes.alive = static_cast<std::uint16_t>(lanes.alive & ~(1U << lane));
   }
 }
 
 #ifdef MRPT_TERRAIN_HAS_VECTORS
 
-// `complete` of some lanes, from the steps at which they entered a word, a row of bits per step,
-// and the number of their steps.
-[[gnu::target("avx2")]] void set_complete(const std::uint8_t* entered, const std::uint64_t* steps,
-                                          std::size_t lanes, std::uint32_t* complete) {
-  const __m256i rows = _mm256_load_si256(reinterpret_cast<const __m256i*>(entered));
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    const __m256i column = _mm256_slli_epi16(rows, 7 - static_cast<int>(lane));
-    const auto bits = static_cast<std::uint32_t>(_mm256_movemask_epi8(column));
-    complete[lane] = last_in_word(bits, steps[lane]);
+#define MRPT_TERRAIN_AVX512 gnu::target("avx512f,avx512dq")
+
+// Eight of the lanes in registers.
+struct EightLanes {
+  std::size_t first;
+  __m512d tx, ty, tz, next;  // next: the least of them
+  __m512i cell, word;
+  __mmask8 alive;
+};
+
+[[MRPT_TERRAIN_AVX512, gnu::always_inline]] inline __m512d least(__m512d x, __m512d y, __m512d z) {
+  return _mm512_maskz_min_pd(0xff, _mm512_maskz_min_pd(0xff, x, y), z);
+}
+
+[[MRPT_TERRAIN_AVX512, gnu::always_inline]] inline void load(const Lanes& lanes, std::size_t first,
+                                                             EightLanes& eight) {
+  eight.first = first;
+  eight.tx = _mm512_load_pd(lanes.crossing[0] + first);
+  eight.ty = _mm512_load_pd(lanes.crossing[1] + first);
+  eight.tz = _mm512_load_pd(lanes.crossing[2] + first);
+  eight.next = least(eight.tx, eight.ty, eight.tz);
+  eight.cell = _mm512_load_si512(lanes.cell + first);
+  eight.word = _mm512_load_si512(lanes.word + first);
+  eight.alive = static_cast<__mmask8>(lanes.alive >> first);
+}
+
+// Appends those of the lanes that are in `which`.
+[[MRPT_TERRAIN_AVX512, gnu::always_inline]] inline void append(__m512i cell, __m512i word,
+                                                               __mmask8 which, Marks& marks) {
+  _mm512_storeu_si512(marks.cell + marks.size, _mm512_maskz_compress_epi64(which, cell));
+  _mm512_storeu_si512(marks.word + marks.size, _mm512_maskz_compress_epi64(which, word));
+  marks.size += static_cast<std::size_t>(__builtin_popcount(which));
+}
+
+// The axes along which the lanes go next. Which of those with the same border goes first is the
+// order of the ties.
+struct AxisMasks {
+  __mmask8 x, y, z;
+};
+template <Ties kTies>
+[[MRPT_TERRAIN_AVX512, gnu::always_inline]] inline AxisMasks next_axes(const EightLanes& eight) {
+  AxisMasks axes;
+  axes.y = _mm512_cmp_pd_mask(eight.ty, eight.next, _CMP_EQ_OQ);
+  if constexpr (kTies == Ties::kAsOctomap) {
+    axes.z = _mm512_cmp_pd_mask(eight.tz, eight.next, _CMP_EQ_OQ);
+    axes.y = _kandn_mask8(axes.z, axes.y);
+    axes.x = _kxnor_mask8(axes.z, axes.y);  // never both
+  } else {
+    axes.x = _mm512_cmp_pd_mask(eight.tx, eight.next, _CMP_EQ_OQ);
+    axes.y = _kandn_mask8(axes.x, axes.y);
+    axes.z = _kxnor_mask8(axes.x, axes.y);
   }
+  return axes;
 }
 
 template <Ties kTies>
-inline constexpr int kGoesFirst = kTies == Ties::kAsOctomap ? _CMP_LT_OQ : _CMP_LE_OQ;
-
-template <Ties kTies>
-[[gnu::target("avx512f,avx512dq")]] void walk_avx512(Lanes& lanes, Trail& trail) {
-  __m512d tx = _mm512_load_pd(lanes.crossing[0]);
-  __m512d ty = _mm512_load_pd(lanes.crossing[1]);
-  __m512d tz = _mm512_load_pd(lanes.crossing[2]);
-  const __m512d spacing_x = _mm512_load_pd(lanes.spacing[0]);
-  const __m512d spacing_y = _mm512_load_pd(lanes.spacing[1]);
-  const __m512d spacing_z = _mm512_load_pd(lanes.spacing[2]);
-  const __m512d length = _mm512_load_pd(lanes.length);
-  const __m512i step_x = _mm512_load_si512(lanes.step[0]);
-  const __m512i step_y = _mm512_load_si512(lanes.step[1]);
-  const __m512i step_z = _mm512_load_si512(lanes.step[2]);
+[[MRPT_TERRAIN_AVX512, gnu::always_inline]] inline void step_all(const Lanes& lanes,
+                                                                 EightLanes& eight, Marks& marks) {
+  const std::size_t first = eight.first;
   const __m512i bits_x = _mm512_set1_epi64(static_cast<long long>(kAxisBits[0]));
   const __m512i bits_y = _mm512_set1_epi64(static_cast<long long>(kAxisBits[1]));
   const __m512i bits_z = _mm512_set1_epi64(static_cast<long long>(kAxisBits[2]));
   const __m512i one = _mm512_set1_epi64(1);
   const __m512i within_word = _mm512_set1_epi64(63);
   const __m512i beyond_word = _mm512_set1_epi64(~63LL);
-  __m512i word = _mm512_setzero_si512();
-  alignas(32) __mmask8 entered[kChunk];
-  const __m512i last = _mm512_load_si512(lanes.last);
-  __m512i cell = _mm512_load_si512(lanes.cell);
-  __m512i steps = _mm512_setzero_si512();
-  __mmask8 alive = lanes.alive;
-  for (std::size_t k = 0; k < kChunk; ++k) {
-    const __mmask8 x_before_y = _mm512_cmp_pd_mask(tx, ty, kGoesFirst<kTies>);
-    const __mmask8 x = _mm512_mask_cmp_pd_mask(x_before_y, tx, tz, kGoesFirst<kTies>);
-    const __mmask8 y = _mm512_mask_cmp_pd_mask(_knot_mask8(x_before_y), ty, tz, kGoesFirst<kTies>);
-    const __mmask8 z = _kxnor_mask8(x, y);  // never both
-    const __m512i bits = _mm512_mask_mov_epi64(_mm512_mask_mov_epi64(bits_z, x, bits_x), y, bits_y);
-    const __m512i step = _mm512_mask_mov_epi64(_mm512_mask_mov_epi64(step_z, x, step_x), y, step_y);
-    // Counts along one axis: carries run through the bits of the others, which are set.
-    const __m512i sum = _mm512_add_epi64(_mm512_ternarylogic_epi64(cell, bits, bits, 0xf3), step);
-    const __m512i before = cell;
-    cell = _mm512_ternarylogic_epi64(bits, sum, cell, 0xca);  // bits ? sum : cell
-    const __m512i bit = _mm512_maskz_sllv_epi64(0xff, one, _mm512_and_si512(cell, within_word));
-    entered[k] = _mm512_test_epi64_mask(_mm512_xor_si512(cell, before), beyond_word);
-    word = _mm512_mask_or_epi64(bit, _knot_mask8(entered[k]), word, bit);
-    tx = _mm512_mask_add_pd(tx, x, tx, spacing_x);
-    ty = _mm512_mask_add_pd(ty, y, ty, spacing_y);
-    tz = _mm512_mask_add_pd(tz, z, tz, spacing_z);
-    const __m512d next = _mm512_maskz_min_pd(0xff, _mm512_maskz_min_pd(0xff, tx, ty), tz);
-    alive = _mm512_mask_cmp_pd_mask(alive, next, length, _CMP_LE_OQ);
-    alive = _mm512_mask_cmpneq_epi64_mask(alive, cell, last);
-    steps = _mm512_mask_add_epi64(steps, alive, steps, one);
-    _mm512_store_si512(trail.cell[k], cell);
-    _mm512_store_si512(trail.word[k], word);
-  }
-  _mm512_store_pd(lanes.crossing[0], tx);
-  _mm512_store_pd(lanes.crossing[1], ty);
-  _mm512_store_pd(lanes.crossing[2], tz);
-  _mm512_store_si512(lanes.cell, cell);
-  lanes.alive = alive;
-  alignas(64) std::uint64_t counts[kLanes];
-  _mm512_store_si512(counts, steps);
-  set_complete(entered, counts, kLanes, trail.complete);
+  const auto at = [first](const auto* row) { return row + first; };
+  auto& [unused, tx, ty, tz, next, cell, word, alive] = eight;
+  const auto [x, y, z] = next_axes<kTies>(eight);
+  const __m512i bits = _mm512_mask_mov_epi64(_mm512_mask_mov_epi64(bits_z, x, bits_x), y, bits_y);
+  const __m512i step =
+      _mm512_mask_mov_epi64(_mm512_mask_mov_epi64(_mm512_load_si512(at(lanes.step[2])), x,
+                                                  _mm512_load_si512(at(lanes.step[0]))),
+                            y, _mm512_load_si512(at(lanes.step[1])));
+  // Counts along one axis: carries run through the bits of the others, which are set.
+  const __m512i sum = _mm512_add_epi64(_mm512_ternarylogic_epi64(cell, bits, bits, 0xf3), step);
+  const __m512i before = cell;
+  cell = _mm512_ternarylogic_epi64(bits, sum, cell, 0xca);  // bits ? sum : cell
+  tx = _mm512_mask_add_pd(tx, x, tx, _mm512_load_pd(at(lanes.spacing[0])));
+  ty = _mm512_mask_add_pd(ty, y, ty, _mm512_load_pd(at(lanes.spacing[1])));
+  tz = _mm512_mask_add_pd(tz, z, tz, _mm512_load_pd(at(lanes.spacing[2])));
+  next = least(tx, ty, tz);
+  const __mmask8 was_alive = alive;
+  alive = _mm512_mask_cmp_pd_mask(alive, next, _mm512_load_pd(at(lanes.length)), _CMP_LE_OQ);
+  alive = _mm512_mask_cmpneq_epi64_mask(alive, cell, _mm512_load_si512(at(lanes.last)));
+  const __mmask8 enters = _mm512_test_epi64_mask(_mm512_xor_si512(cell, before), beyond_word);
+  const __mmask8 leaves = _kand_mask8(was_alive, _kor_mask8(enters, _knot_mask8(alive)));
+  append(before, word, leaves, marks);
+  const __m512i bit = _mm512_maskz_sllv_epi64(0xff, one, _mm512_and_si512(cell, within_word));
+  word = _mm512_mask_or_epi64(bit, _knot_mask8(enters), word, bit);
 }
 
-// Four of the eight lanes, from number `first` on.
+[[MRPT_TERRAIN_AVX512]] void store(const EightLanes& eight, Lanes& lanes) {
+  _mm512_store_pd(lanes.crossing[0] + eight.first, eight.tx);
+  _mm512_store_pd(lanes.crossing[1] + eight.first, eight.ty);
+  _mm512_store_pd(lanes.crossing[2] + eight.first, eight.tz);
+  _mm512_store_si512(lanes.cell + eight.first, eight.cell);
+  _mm512_store_si512(lanes.word + eight.first, eight.word);
+  lanes.alive = static_cast<std::uint16_t>((lanes.alive & ~(0xff << eight.first)) |
+                                           eight.alive << eight.first);
+}
+
+// Two times eight lanes take turns: a step of one does not wait for the step of the other.
 template <Ties kTies>
-[[gnu::target("avx2")]] void walk_four_lanes(Lanes& lanes, Trail& trail, int first) {
+[[MRPT_TERRAIN_AVX512]] void walk_avx512(Lanes& lanes, Marks& marks) {
+  static_assert(kLanes == 16);
+  EightLanes low, high;
+  load(lanes, 0, low);
+  load(lanes, 8, high);
+  marks.size = 0;
+  for (std::size_t k = 0; k < kChunk && (low.alive | high.alive) != 0; ++k) {
+    step_all<kTies>(lanes, low, marks);
+    step_all<kTies>(lanes, high, marks);
+  }
+  store(low, lanes);
+  store(high, lanes);
+}
+
+// For each of the 16 subsets of four lanes, the halves of lanes that move the subset to the front.
+struct alignas(32) ToFront {
+  std::int32_t half[16][8];
+};
+constexpr ToFront kToFront = [] {
+  ToFront order{};
+  for (int which = 0; which < 16; ++which) {
+    int size = 0;
+    for (int lane = 0; lane < 4; ++lane) {
+      if ((which >> lane & 1) == 0) continue;
+      order.half[which][size++] = 2 * lane;
+      order.half[which][size++] = 2 * lane + 1;
+    }
+  }
+  return order;
+}();
+
+[[gnu::target("avx2"), gnu::always_inline]] inline void append(__m256i cell, __m256i word,
+                                                               int which, Marks& marks) {
+  const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(kToFront.half[which]));
+  const auto to = [&marks](std::uint64_t* row) {
+    return reinterpret_cast<__m256i*>(row + marks.size);
+  };
+  _mm256_storeu_si256(to(marks.cell), _mm256_permutevar8x32_epi32(cell, order));
+  _mm256_storeu_si256(to(marks.word), _mm256_permutevar8x32_epi32(word, order));
+  marks.size += static_cast<std::size_t>(__builtin_popcount(static_cast<unsigned>(which)));
+}
+
+template <Ties kTies>
+inline constexpr int kGoesFirst = kTies == Ties::kAsOctomap ? _CMP_LT_OQ : _CMP_LE_OQ;
+
+// Four of the lanes, from number `first` on.
+template <Ties kTies>
+[[gnu::target("avx2")]] void walk_four_lanes(Lanes& lanes, Marks& marks, int first) {
   const auto words = [first](auto* row) { return reinterpret_cast<__m256i*>(row + first); };
   __m256d tx = _mm256_load_pd(lanes.crossing[0] + first);
   __m256d ty = _mm256_load_pd(lanes.crossing[1] + first);
@@ -145,11 +211,10 @@ template <Ties kTies>
   const __m256i ones = _mm256_set1_epi64x(-1);
   const __m256i within_word = _mm256_set1_epi64x(63);
   __m256i cell = _mm256_load_si256(words(lanes.cell));
-  __m256i word = _mm256_setzero_si256(), steps = _mm256_setzero_si256();
+  __m256i word = _mm256_load_si256(words(lanes.word));
   const int up = lanes.alive >> first;
   __m256i alive = _mm256_set_epi64x(-(up >> 3 & 1), -(up >> 2 & 1), -(up >> 1 & 1), -(up & 1));
-  alignas(32) std::uint8_t entered[kChunk];
-  for (std::size_t k = 0; k < kChunk; ++k) {
+  for (std::size_t k = 0; k < kChunk && _mm256_testz_si256(alive, alive) == 0; ++k) {
     const __m256d x_before_y = _mm256_cmp_pd(tx, ty, kGoesFirst<kTies>);
     const __m256d x = _mm256_and_pd(x_before_y, _mm256_cmp_pd(tx, tz, kGoesFirst<kTies>));
     const __m256d y = _mm256_andnot_pd(x_before_y, _mm256_cmp_pd(ty, tz, kGoesFirst<kTies>));
@@ -161,12 +226,6 @@ template <Ties kTies>
     const __m256i sum = _mm256_add_epi64(_mm256_or_si256(cell, _mm256_xor_si256(bits, ones)), step);
     const __m256i before = cell;
     cell = _mm256_or_si256(_mm256_and_si256(bits, sum), _mm256_andnot_si256(bits, before));
-    const __m256i bit =
-        _mm256_sllv_epi64(_mm256_set1_epi64x(1), _mm256_and_si256(cell, within_word));
-    const __m256i stays = _mm256_cmpeq_epi64(
-        _mm256_andnot_si256(within_word, _mm256_xor_si256(cell, before)), _mm256_setzero_si256());
-    entered[k] = static_cast<std::uint8_t>(~_mm256_movemask_pd(_mm256_castsi256_pd(stays)));
-    word = _mm256_or_si256(bit, _mm256_and_si256(stays, word));
     tx = _mm256_add_pd(tx, _mm256_and_pd(x, _mm256_load_pd(lanes.spacing[0] + first)));
     ty = _mm256_add_pd(ty, _mm256_and_pd(y, _mm256_load_pd(lanes.spacing[1] + first)));
     tz = _mm256_add_pd(
@@ -174,26 +233,31 @@ template <Ties kTies>
     const __m256d next = _mm256_min_pd(_mm256_min_pd(tx, ty), tz);
     const __m256d in_length = _mm256_cmp_pd(next, _mm256_load_pd(lanes.length + first), _CMP_LE_OQ);
     const __m256i arrived = _mm256_cmpeq_epi64(cell, _mm256_load_si256(words(lanes.last)));
+    const __m256i was_alive = alive;
     alive = _mm256_andnot_si256(arrived, _mm256_and_si256(alive, _mm256_castpd_si256(in_length)));
-    steps = _mm256_sub_epi64(steps, alive);
-    _mm256_store_si256(words(trail.cell[k]), cell);
-    _mm256_store_si256(words(trail.word[k]), word);
+    const __m256i stays = _mm256_cmpeq_epi64(
+        _mm256_andnot_si256(within_word, _mm256_xor_si256(cell, before)), _mm256_setzero_si256());
+    const __m256i leaves = _mm256_andnot_si256(_mm256_and_si256(stays, alive), was_alive);
+    append(before, word, _mm256_movemask_pd(_mm256_castsi256_pd(leaves)), marks);
+    const __m256i bit =
+        _mm256_sllv_epi64(_mm256_set1_epi64x(1), _mm256_and_si256(cell, within_word));
+    word = _mm256_or_si256(bit, _mm256_and_si256(stays, word));
   }
   _mm256_store_pd(lanes.crossing[0] + first, tx);
   _mm256_store_pd(lanes.crossing[1] + first, ty);
   _mm256_store_pd(lanes.crossing[2] + first, tz);
   _mm256_store_si256(words(lanes.cell), cell);
+  _mm256_store_si256(words(lanes.word), word);
   const int still = _mm256_movemask_pd(_mm256_castsi256_pd(alive));
-  lanes.alive = static_cast<std::uint8_t>((lanes.alive & ~(15 << first)) | still << first);
-  alignas(32) std::uint64_t counts[4];
-  _mm256_store_si256(reinterpret_cast<__m256i*>(counts), steps);
-  set_complete(entered, counts, 4, trail.complete + first);
+  lanes.alive = static_cast<std::uint16_t>((lanes.alive & ~(15 << first)) | still << first);
 }
 
 template <Ties kTies>
-void walk_avx2(Lanes& lanes, Trail& trail) {
-  walk_four_lanes<kTies>(lanes, trail, 0);
-  walk_four_lanes<kTies>(lanes, trail, 4);
+[[gnu::target("avx2")]] void walk_avx2(Lanes& lanes, Marks& marks) {
+  marks.size = 0;
+  for (int first = 0; first < static_cast<int>(kLanes); first += 4) {
+    walk_four_lanes<kTies>(lanes, marks, first);
+  }
 }
 
 #endif

@@ -12,11 +12,11 @@
 namespace mrpt_terrain::octree {
 
 /// Rays walk side by side, a lane each.
-inline constexpr std::size_t kLanes = 8;
-/// Steps between two looks at which lanes have arrived.
+inline constexpr std::size_t kLanes = 16;
+/// Most steps between two looks at what the lanes have left behind.
 inline constexpr std::size_t kChunk = 32;
 
-/// State of eight rays; what the arrays mean is said at `RayBatch`.
+/// State of the rays; what the arrays mean is said at `RayBatch`.
 struct Lanes {
   alignas(64) double crossing[3][kLanes];
   alignas(64) double spacing[3][kLanes];
@@ -24,18 +24,22 @@ struct Lanes {
   alignas(64) CellCode step[3][kLanes];
   alignas(64) CellCode cell[kLanes];
   alignas(64) CellCode last[kLanes];
-  std::uint8_t alive;  ///< a bit per lane: it has not arrived yet
+  alignas(64) std::uint64_t word[kLanes];  ///< bits of the cells so far in the word of `cell`
+  std::uint16_t alive;                     ///< a bit per lane: it has not arrived yet
 };
 
-/// Where the lanes went in one chunk. Cells of a lane that follow each other in one word of 4^3
-/// cells are collected, which leaves a quarter of them to be looked up.
-struct Trail {
-  alignas(64) CellCode cell[kChunk][kLanes];
-  alignas(64) std::uint64_t word[kChunk][kLanes];  ///< bits of the word's cells so far
-  std::uint32_t complete[kLanes];  ///< per lane, a bit per step: the last one in its word
+/// Words of 4^3 cells that lanes have left, in no particular order. Cells of a lane that follow
+/// each other in one word are collected, which leaves a quarter of them to be looked up.
+struct Marks {
+  std::size_t size = 0;
+  // Whole registers are written at the end, only the first lanes of which count.
+  CellCode cell[kChunk * kLanes + 8];  ///< one of the word's cells
+  std::uint64_t word[kChunk * kLanes + 8];
 };
 
-using ChunkWalker = void (*)(Lanes&, Trail&);
+/// Walks until no lane is alive, `kChunk` steps at most; `marks` gets the words that lanes leave on
+/// the way or arrive in. What lanes hold that have arrived means nothing.
+using ChunkWalker = void (*)(Lanes&, Marks& marks);
 
 /// Versions that this processor can run, the fastest first; the last runs everywhere.
 template <Ties kTies>

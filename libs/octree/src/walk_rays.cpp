@@ -14,6 +14,8 @@ void load(const Values& from, const std::array<std::uint16_t, kLanes>& rays, Val
   for (std::size_t lane = 0; lane < kLanes; ++lane) to[lane] = from[rays[lane]];
 }
 
+std::uint64_t bit_of(CellCode cell) { return std::uint64_t{1} << (cell & 63); }
+
 // Lanes beyond the first `count` stand still.
 void load_lanes(const RayBatch& batch, const std::array<std::uint16_t, kLanes>& rays,
                 std::size_t count, Lanes& lanes) {
@@ -29,30 +31,38 @@ void load_lanes(const RayBatch& batch, const std::array<std::uint16_t, kLanes>& 
   for (std::size_t lane = 0; lane < count; ++lane) {
     if (lanes.cell[lane] != lanes.last[lane]) alive |= 1U << lane;
   }
-  lanes.alive = static_cast<std::uint8_t>(alive);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) lanes.word[lane] = bit_of(lanes.cell[lane]);
+  lanes.alive = static_cast<std::uint16_t>(alive);
 }
 
-void walk_lanes(ChunkWalker walk_chunk, Lanes& lanes, ScanCells& cells) {
-  std::array<ScanCells::Cursor, kLanes> cursors;
-  Trail trail;
+// Rays that end where they begin do not walk.
+void mark_where_they_stand(const Lanes& lanes, std::size_t count, ScanCells& cells) {
+  for (std::uint32_t left = ~std::uint32_t{lanes.alive} & ((1U << count) - 1); left != 0;
+       left &= left - 1) {
+    const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
+    cells.mark_free(lanes.cell[lane], lanes.word[lane]);
+  }
+}
+
+void walk_lanes(ChunkWalker walk_chunk, Lanes& lanes, Marks& marks, ScanCells& cells) {
   while (lanes.alive != 0) {
-    walk_chunk(lanes, trail);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      ScanCells::Cursor cursor = cursors[lane];
-      for (std::uint32_t left = trail.complete[lane]; left != 0; left &= left - 1) {
-        const auto k = static_cast<std::size_t>(__builtin_ctz(left));
-        cells.mark_free(trail.cell[k][lane], trail.word[k][lane], cursor);
-      }
-      cursors[lane] = cursor;
-    }
+    walk_chunk(lanes, marks);
+    for (std::size_t k = 0; k < marks.size; ++k) cells.mark_free(marks.cell[k], marks.word[k]);
   }
 }
 
 // Rays in the order of their lengths, so that those side by side arrive together.
 void sort_by_cells(const RayBatch& rays, std::array<std::uint16_t, RayBatch::kCapacity>& order) {
-  for (std::size_t k = 0; k < rays.size; ++k) order[k] = static_cast<std::uint16_t>(k);
-  std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(rays.size),
-            [&rays](std::uint16_t a, std::uint16_t b) { return rays.cells[a] < rays.cells[b]; });
+  constexpr std::uint32_t kLongest = 511;  // longer rays are few, and take chunks of cells anyway
+  std::array<std::uint16_t, kLongest + 2> begin{};
+  const auto length_of = [&](std::size_t k) { return std::min(rays.cells[k], kLongest); };
+  for (std::size_t k = 0; k < rays.size; ++k) ++begin[length_of(k) + 1];
+  for (std::size_t k = 1; k < begin.size(); ++k) {
+    begin[k] = static_cast<std::uint16_t>(begin[k] + begin[k - 1]);
+  }
+  for (std::size_t k = 0; k < rays.size; ++k) {
+    order[begin[length_of(k)]++] = static_cast<std::uint16_t>(k);
+  }
 }
 
 }  // namespace
@@ -60,17 +70,15 @@ void sort_by_cells(const RayBatch& rays, std::array<std::uint16_t, RayBatch::kCa
 void walk_rays_by(ChunkWalker walk_chunk, RayBatch& rays, ScanCells& cells) {
   std::array<std::uint16_t, RayBatch::kCapacity> order;
   sort_by_cells(rays, order);
-  ScanCells::Cursor cursor;
-  for (std::size_t k = 0; k < rays.size; ++k) {
-    cells.mark_free(rays.first[k], std::uint64_t{1} << (rays.first[k] & 63), cursor);
-  }
+  Marks marks;
   for (std::size_t begin = 0; begin < rays.size; begin += kLanes) {
     const std::size_t count = std::min(kLanes, rays.size - begin);
     std::array<std::uint16_t, kLanes> group{};
     std::copy_n(order.begin() + static_cast<std::ptrdiff_t>(begin), count, group.begin());
     Lanes lanes;
     load_lanes(rays, group, count, lanes);
-    walk_lanes(walk_chunk, lanes, cells);
+    mark_where_they_stand(lanes, count, cells);
+    walk_lanes(walk_chunk, lanes, marks, cells);
   }
   rays.size = 0;
 }

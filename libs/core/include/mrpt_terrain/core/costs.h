@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "mrpt_terrain/core/elevation_grid.h"
@@ -88,10 +89,30 @@ struct CellCosts {
   [[nodiscard]] std::size_t size() const { return status.size(); }
 };
 
+/// How well the plane of a window is known. Windows without a plane have no cells.
+struct WindowQuality {
+  float variance = 0.0F;  ///< across the plane, m^2
+  float cells = -1.0F;
+};
+
+/// The plane that a cell takes; flat and infinitely rough where it has none.
+struct CellSurface {
+  double x = 0.0, y = 0.0, z = 0.0;  ///< as in `LocalPlane`
+  float gradient_x = 0.0F;
+  float gradient_y = 0.0F;
+  float roughness = std::numeric_limits<float>::infinity();
+  float known = 0.0F;  ///< 1 or 0: whether there is one
+
+  [[nodiscard]] double height_at(double px, double py) const {
+    return z + gradient_x * (px - x) + gradient_y * (py - y);
+  }
+};
+
 /// Scratch memory of `compute_cell_costs`.
 struct CostWorkspace {
-  std::vector<LocalPlane> planes;  ///< per slot: of the window about it
-  std::vector<Slot> surface;       ///< per slot: the window whose plane it takes, or kUnobserved
+  std::vector<LocalPlane> planes;        ///< per slot: of the window about it
+  std::vector<WindowQuality> qualities;  ///< the same, after an entry for unobserved cells
+  std::vector<CellSurface> surfaces;     ///< likewise
 };
 
 /// Cells to each side of a window: half the robot's width, from 1 to kMaxReach cells. A window is

@@ -63,6 +63,10 @@ struct ElevationGrid {
   [[nodiscard]] float h_diff(std::size_t slot) const { return h_max[slot] - h_min[slot]; }
 };
 
+/// Leaves a grid without observed cells. It keeps its memory, and where the geometry stays the same
+/// the cost is that of the cells that were observed before.
+void clear_grid(const GridGeometry& geometry, ElevationGrid& grid);
+
 /// How many points became what when the grid was built; the four add up to the number of points.
 struct ProjectionCounts {
   std::size_t in_map = 0;

@@ -167,11 +167,23 @@ struct ScanBin {
   MomentSums sums;  ///< about the centre of the cell and the bottom of the layer
 };
 
-/// Scratch memory of `fuse_scan`; `head` is empty between calls.
+/// Layers that a cell has bins in.
+struct CellLayers {
+  MapCell cell;
+  LayerSpan span;        ///< from its lowest bin to its highest; empty if it has none
+  bool several = false;  ///< there are bins in more than one layer
+};
+[[nodiscard]] CellLayers layers_of(const Tile& tile, MapCell cell);
+
+/// Scratch memory of `fuse_scan`; `head` is empty between calls. What the last scan hit may be read
+/// from `hit`: its cells, each once and as the scan left it, in no order that means something.
 struct FusionWorkspace {
   std::vector<ScanBin> bins;
-  std::vector<std::int32_t> head;  ///< per cell in reach: its first bin, or -1
-  std::vector<Tile*> tiles;        ///< per tile in reach: the writable tile, or null
+  std::vector<std::int32_t> head;        ///< per cell in reach: its first bin, or -1
+  std::vector<std::int32_t> cells;       ///< first bins of the cells that were hit
+  std::vector<std::int32_t> by_tile;     ///< the same, tile by tile
+  std::vector<std::int32_t> tile_begin;  ///< per tile in reach: where its cells begin in `by_tile`
+  std::vector<CellLayers> hit;
 };
 
 /// Fuses one scan into the grid, and lets the window follow the robot if it is a rolling one.

@@ -103,6 +103,19 @@ void for_each_bin(const Tile& tile, std::size_t place, Visit&& visit) {
 }
 
 /// Number, mean and scatter of a bin's points about the centre of its cell and height 0 of the map.
-[[nodiscard]] Moments moments_of(const HeightBin& bin, const MapLattice& lattice);
+[[nodiscard]] inline Moments moments_of(const HeightBin& bin, const MapLattice& lattice) {
+  Moments m;
+  m.n = bin.count;
+  m.mean_x = bin.mean_x;
+  m.mean_y = bin.mean_y;
+  m.mean_z = lattice.bottom_of(bin.layer) + double{bin.mean_z};
+  m.m_xx = bin.m_xx;
+  m.m_xy = bin.m_xy;
+  m.m_xz = bin.m_xz;
+  m.m_yy = bin.m_yy;
+  m.m_yz = bin.m_yz;
+  m.m_zz = bin.m_zz;
+  return m;
+}
 
 }  // namespace mrpt_terrain

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "mrpt_terrain/core/grid_geometry.h"
@@ -32,6 +33,12 @@ struct MapCellRect {
   }
   friend bool operator!=(const MapCellRect& a, const MapCellRect& b) { return !(a == b); }
 };
+
+/// Cells that lie in both of two rectangles; may be empty.
+[[nodiscard]] inline MapCellRect intersection(const MapCellRect& a, const MapCellRect& b) {
+  return {{std::max(a.low.i, b.low.i), std::max(a.low.j, b.low.j)},
+          {std::min(a.high.i, b.high.i), std::min(a.high.j, b.high.j)}};
+}
 
 /// Greatest integer that is not above `value`. Requires |value| < 2^31.
 [[nodiscard]] inline std::int32_t floor_to_int(double value) {

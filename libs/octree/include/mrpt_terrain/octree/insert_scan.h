@@ -9,6 +9,8 @@
 #include <memory>
 #include <vector>
 
+#include "mrpt_terrain/octree/free_cells.h"
+
 /// \file
 /// Insertion of a whole scan into an `octomap::OcTree`, with the same tree as OctoMap 1.9.7's
 /// `insertPointCloud(cloud, origin, max_range, lazy_eval = false, discretize)` leaves.
@@ -87,8 +89,10 @@ class InsertionWorkspace {
 /// Inserts a scan.
 /// \param[out] freed if given: cells that went from occupied to free, in no particular order;
 /// cleared first. Needs a supported tree: with OctoMap's own functions it stays empty.
+/// \param[in,out] free if given: the free cells of the tree, before and after
 InsertionResult insert_scan(const RayEnds& ends, const RayOrigins& origins,
                             const InsertionOptions& options, InsertionWorkspace& workspace,
-                            octomap::OcTree& tree, std::vector<FreedCube>* freed = nullptr);
+                            octomap::OcTree& tree, std::vector<FreedCube>* freed = nullptr,
+                            FreeCells* free = nullptr);
 
 }  // namespace mrpt_terrain::octree

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace mrpt_terrain {
+
+/// Cells that are worked on side by side. Each lane does what a single cell would, operation by
+/// operation: the same bits with every width of registers.
+inline constexpr std::size_t kCellLanes = 8;
+
+typedef double DoubleLanes __attribute__((vector_size(kCellLanes * sizeof(double))));
+/// What a comparison of lanes gives: all bits set or none.
+typedef std::int64_t MaskLanes __attribute__((vector_size(kCellLanes * sizeof(std::int64_t))));
+
+/// The same in memory, one number per lane.
+struct alignas(64) LaneArray {
+  double value[kCellLanes] = {};
+};
+
+// By reference: passing vectors by value would depend on the instruction set. Inlined always: so
+// they become part of functions for several processors.
+#define MRPT_TERRAIN_LANES [[gnu::always_inline]] inline
+
+MRPT_TERRAIN_LANES void load(const LaneArray& array, DoubleLanes& lanes) {
+  std::memcpy(&lanes, array.value, sizeof(lanes));
+}
+MRPT_TERRAIN_LANES void store(const DoubleLanes& lanes, LaneArray& array) {
+  std::memcpy(array.value, &lanes, sizeof(lanes));
+}
+MRPT_TERRAIN_LANES void take_roots(DoubleLanes& lanes) {
+  LaneArray array;
+  store(lanes, array);
+  for (double& value : array.value) value = std::sqrt(value);
+  load(array, lanes);
+}
+MRPT_TERRAIN_LANES bool any_of(const MaskLanes& mask) {
+  std::int64_t lanes[kCellLanes];
+  std::memcpy(lanes, &mask, sizeof(lanes));
+  std::int64_t any = 0;
+  for (const std::int64_t lane : lanes) any |= lane;
+  return any != 0;
+}
+
+}  // namespace mrpt_terrain
