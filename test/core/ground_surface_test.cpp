@@ -274,6 +274,19 @@ TEST(GroundSurface, ThePlaneKeepsItsLimits) {
   EXPECT_LE(std::abs(raised.offset), 0.1F + 1e-6F);
 }
 
+// A platform 0.5 m high, within `max_offset`, over two fifths of the cells near the robot. Cells
+// below a plane count -1, on it 1, above it 0: the ground has 3/5, the platform 2/5 - 3/5 of all
+// votes. A plane aslant may win if it stays within the search's tolerance of 0.1 m, and 0.01 m more
+// per metre: 0.2 m where the cells are.
+TEST(GroundSurface, ThePlaneHasLittleBelowIt) {
+  Points points;
+  worlds::add_surface(points, {-12.0, 12.0, -12.0, 12.0}, 0.1,
+                      [](double x, double) { return x < 2.4 ? 0.0 : 0.5; });
+  const GroundSurface surface = surface_of(points);
+  EXPECT_NEAR(surface.offset, 0.0, 0.2);
+  EXPECT_NEAR(surface.height_at(-9.0F, 0.0F), 0.0, 0.01);
+}
+
 /// A world with something of everything: tilt, a hill, walls, a car.
 Points mixed_world() {
   worlds::Scene scene;

@@ -148,6 +148,17 @@ TEST(Holes, AStepDownIsNone) {
   }
 }
 
+// What is seen ends at the far side of the hole: it may as well be a step.
+TEST(Holes, ARimOnOneSideOnlyIsNotEnough) {
+  const Rect hole{2.0, 2.4, -6.0, 6.0};
+  for (const double depth : {0.1, 0.2}) {
+    const Points whole = worlds::patch_with_hole(kPatch, hole, depth);
+    EXPECT_FALSE(holes_in(whole).cells().empty()) << depth;
+    const Points one_side = worlds::patch_with_hole({-6.0, 2.4, -6.0, 6.0}, hole, depth);
+    EXPECT_TRUE(holes_in(one_side).cells().empty()) << depth;
+  }
+}
+
 TEST(Holes, ARoadBetweenKerbsIsNone) {
   const Points points = ground_of([](double, double y) { return std::abs(y) < 3.5 ? 0.0 : 0.12; });
   EXPECT_TRUE(holes_in(points).cells().empty());
