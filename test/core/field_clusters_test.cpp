@@ -165,6 +165,15 @@ TEST(FieldClusters, AGapInHeightKeepsACanopyOffAWall) {
   EXPECT_EQ(numbered({"T#T#"}, linked(1.0)), (Rows{"0101"})) << "past each other";
 }
 
+// A hole has no height above the ground, whatever hangs over some of its cells.
+TEST(FieldClusters, WhatHangsOverAHoleDoesNotDivideIt) {
+  Cells cells = drawn({"vvv"});
+  cells.field.above[1] = 3;
+  cells.field.low[1] = 1.0F;
+  cells.field.high[1] = 2.0F;
+  EXPECT_EQ(clustered(cells, touching()).size(), 1U);
+}
+
 // Dropped is what has too few cells and too few points; enough of one of them is enough.
 TEST(FieldClusters, SmallThingsAreDroppedAndCounted) {
   FieldClusterParams params = touching();
@@ -249,7 +258,9 @@ std::vector<std::int32_t> labels_by_pairs(const Cells& cells, const FieldCluster
         if (steps > 3 || steps - 1 > gap) continue;
         const float high = std::min(cells.field.high[a], cells.field.high[b]);
         const float low = std::max(cells.field.low[a], cells.field.low[b]);
-        if (low - high > static_cast<float>(params.step) || label[a] == label[b]) continue;
+        const bool apart = low - high > static_cast<float>(params.step);
+        if (cells.ground.rule[a] != GroundRule::kLow && apart) continue;
+        if (label[a] == label[b]) continue;
         label[a] = label[b] = std::min(label[a], label[b]);
         changed = true;
       }
@@ -264,7 +275,7 @@ TEST(FieldClusters, SameAsLinkingAllPairs) {
   for (int trial = 0; trial < 200; ++trial) {
     Cells cells = drawn(random_rows(random, "#.v. ..T"));
     for (std::size_t slot = 0; slot < cells.field.size(); ++slot) {
-      if (cells.ground.rule[slot] != GroundRule::kHigh) continue;
+      if (cells.ground.is_ground(slot)) continue;
       cells.field.low[slot] = static_cast<float>(2.0 * random.uniform());
       cells.field.high[slot] = cells.field.low[slot] + static_cast<float>(random.uniform());
     }

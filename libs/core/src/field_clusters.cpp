@@ -37,6 +37,8 @@ struct Linker {
 
   [[nodiscard]] bool compatible(std::size_t a, std::size_t b) const {
     if (ground.rule[a] != ground.rule[b]) return false;
+    // What is over a hole is no part of it.
+    if (ground.rule[a] == GroundRule::kLow) return true;
     const float gap = std::max(cells.low[a], cells.low[b]) - std::min(cells.high[a], cells.high[b]);
     return gap <= step;
   }
