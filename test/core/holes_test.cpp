@@ -206,6 +206,17 @@ TEST(Holes, EveryParameterCounts) {
   EXPECT_FALSE(holes_in(noisy(points, 0.005, 273)).cells().empty()) << "rim";
 }
 
+// Points above the ground, over the hole and beside it, are neither floor nor rim.
+TEST(Holes, WhatStandsBesideAHoleAndHangsOverItDoesNotHideIt) {
+  Points points = worlds::patch_with_hole(kPatch, kPothole, 0.1);
+  worlds::add_flat(points, {1.0, 2.6, 1.0, 1.6}, 0.1, 1.2);
+  RandomGenerator random(274);
+  worlds::add_wall(points, 2.95, 0.0, 3.0, 2.0, 0.05, 0.0, random);
+  const Holes holes = holes_in(points);
+  EXPECT_EQ(holes.cells().size(), 9U);
+  for (const std::size_t slot : holes.cells()) EXPECT_GT(holes.stages.cells.above[slot], 0);
+}
+
 // Two holes are told apart, and the rim of cells elsewhere is the ground.
 TEST(Holes, TwoHolesAndTheGroundBetweenThem) {
   Points points = worlds::patch_with_hole({-6.0, 0.0, -6.0, 6.0}, {-2.6, -2.0, 1.0, 1.6}, 0.1);
