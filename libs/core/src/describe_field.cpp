@@ -113,7 +113,10 @@ void label_field_points(const DescriptionWorkspace& workspace, const Description
   result.cluster.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const bool known = result.support[i] != Support::kUnknown;
-    result.reason[i] = known ? UnknownReason::kNone : reason_of(workspace.point_slots[i]);
+    // A point in the map has no support where the map reaches beyond the reference.
+    const UnknownReason reason = workspace.point_slots[i] < 0 ? reason_of(workspace.point_slots[i])
+                                                              : UnknownReason::kOutsideMap;
+    result.reason[i] = known ? UnknownReason::kNone : reason;
     const std::int32_t slot = workspace.cluster_slots[i];
     result.cluster[i] =
         slot < 0 ? kNoCluster : description.clusters.cluster_of[static_cast<std::size_t>(slot)];

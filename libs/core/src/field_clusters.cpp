@@ -37,6 +37,8 @@ struct Linker {
 
   [[nodiscard]] bool compatible(std::size_t a, std::size_t b) const {
     if (ground.rule[a] != ground.rule[b] || cells.deck[a] != cells.deck[b]) return false;
+    // What is over a hole is no part of it.
+    if (ground.rule[a] == GroundRule::kLow) return true;
     const float gap = std::max(cells.low[a], cells.low[b]) - std::min(cells.high[a], cells.high[b]);
     return gap <= step;
   }
@@ -77,7 +79,10 @@ void count_members(const GroundSegmentation& ground, const FieldCells& cells,
     workspace.parent[slot] = root_of(workspace.parent, static_cast<std::int32_t>(slot));
     const auto root = static_cast<std::size_t>(workspace.parent[slot]);
     ++workspace.cells_of[root];
-    workspace.points_of[root] += cells.above[slot] + cells.below[slot];
+    // The floor of a hole is ground.
+    workspace.points_of[root] += ground.rule[slot] == GroundRule::kLow
+                                     ? cells.on[slot] + cells.below[slot]
+                                     : cells.above[slot];
   }
 }
 

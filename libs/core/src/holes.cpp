@@ -120,8 +120,9 @@ void mark_candidates(const FieldWorkspace& field, const ElevationGrid& grid,
     const Position2 centre = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[slot]));
     cells.rim[slot] = rim_at(field.surface, workspace, static_cast<float>(centre.x),
                              static_cast<float>(centre.y), cells.ground[slot]);
-    workspace.candidate[slot] =
-        cells.on[slot] + cells.below[slot] > 0 && depth_of(cells, slot) >= least ? 1 : 0;
+    // What stands in a hole stays a thing of its own.
+    const bool floor = cells.above[slot] == 0 && cells.on[slot] + cells.below[slot] > 0;
+    workspace.candidate[slot] = floor && depth_of(cells, slot) >= least ? 1 : 0;
   }
 }
 

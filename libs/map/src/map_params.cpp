@@ -150,6 +150,9 @@ void check_together(const MapParams& params, const std::string& source) {
       params.creation.fusion == Fusion::kRolling && params.creation.octree && !whole,
       "octree_resolution: must go into cell_size 1 to 64 times where scans are fused, so that the "
       "OctoMap can tell which heights of a cell are free");
+  refuse(params.creation.fusion == Fusion::kRolling &&
+             params.description.description.mode == DescriptionMode::kField,
+         "mode: field describes single scans; where scans are fused, it must be paper");
   if (problems.empty()) return;
   std::string text;
   for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;

@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/core/ground_surface.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "allocation_counter.h"
+#include "field_worlds.h"
+#include "mrpt_terrain/core/random.h"
+
+namespace mrpt_terrain {
+namespace {
+
+using worlds::radians;
+using worlds::Rect;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+GroundSurface surface_of(const Points& points, const GroundSurfaceParams& params = {}) {
+  GroundSurface result;
+  GroundSurfaceWorkspace workspace;
+  find_ground_surface(points.view(), params, workspace, result);
+  return result;
+}
+
+/// Greatest distance between the reference and the ground at those points that lie on it.
+struct Errors {
+  double worst = 0.0;
+  double mean = 0.0;
+  int points = 0;
+};
+template <class Height>
+Errors errors_of(const GroundSurface& surface, const Points& ground, double range,
+                 Height&& height) {
+  Errors errors;
+  for (std::size_t i = 0; i < ground.size(); ++i) {
+    const double x = double{ground.x[i]}, y = double{ground.y[i]};
+    if (std::hypot(x, y) > range) continue;
+    const double error =
+        std::abs(double{surface.height_at(ground.x[i], ground.y[i])} - height(x, y));
+    errors.worst = std::max(errors.worst, error);
+    errors.mean += error;
+    ++errors.points;
+  }
+  errors.mean /= std::max(errors.points, 1);
+  return errors;
+}
+
+double level(double, double) { return 0.0; }
+
+/// Rings on level ground and what else the scene holds, tilted with it.
+Points scan_of(const worlds::Scene& scene, int beams, std::uint64_t seed = 1) {
+  RandomGenerator random(seed);
+  return worlds::scan(scene, worlds::coarse_rings(beams), random).points;
+}
+
+/// Those points of a scan of level ground that lie on it.
+Points on_level_ground(const Points& points) {
+  Points result;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (std::abs(points.z[i]) < 1e-4F) result.push_back(points.x[i], points.y[i], points.z[i]);
+  }
+  return result;
+}
+
+// Analytic. A ring that crosses a cell of 0.4 m shows its ground on one side of the centre, up to
+// 0.2 m sqrt(2) away: 0.05 m of height at 10 deg. Heights above the coarser levels, which are
+// planes here, take that out up to what the levels miss: a fifth of it is allowed.
+TEST(GroundSurface, ATiltedPlaneIsFoundWhereverThereArePoints) {
+  for (const int beams : {16, 32, 64}) {
+    const Points points = worlds::tilted(scan_of({}, beams), radians(10.0), 0.2);
+    const GroundSurface surface = surface_of(points);
+    const auto plane = [](double x, double) { return 0.2 - std::tan(radians(10.0)) * x; };
+    const Errors errors = errors_of(surface, points, 60.0, plane);
+    ASSERT_GT(errors.points, 4000);
+    EXPECT_LT(errors.worst, 0.01) << beams;
+    EXPECT_LT(errors.mean, 0.002) << beams;
+    EXPECT_NEAR(surface.gradient_x, -std::tan(radians(10.0)), 0.02);
+    EXPECT_NEAR(surface.gradient_y, 0.0, 0.02);
+    EXPECT_NEAR(surface.offset, 0.2, 0.1);
+  }
+}
+
+TEST(GroundSurface, HeightsOfPointsAreTheirsAboveTheReference) {
+  const Points points = worlds::tilted(scan_of({}, 32), radians(10.0), 0.2);
+  const GroundSurface surface = surface_of(points);
+  ASSERT_EQ(surface.height.size(), surface.cells.points.size());
+  for (std::size_t k = 0; k < surface.height.size(); k += 7) {
+    const CellPoint& point = surface.cells.points[k];
+    // Coordinates up to 70 m and heights up to 12 m in floats: 5e-6 m each.
+    EXPECT_NEAR(surface.height[k], point.z - surface.height_at(point.x, point.y), 1e-4);
+  }
+}
+
+// A hill of the shape of a bell, 1.5 m high, 15 m away, steepest at 6 m from its top, with 0.15.
+double hill(double x, double y) {
+  const double dx = (x - 15.0) / 6.0, dy = (y - 3.0) / 6.0;
+  return 1.5 * std::exp(-0.5 * (dx * dx + dy * dy));
+}
+
+// Tolerance: the reference is linear between nodes 0.4 m apart, which misses 0.4^2 / 8 times the
+// curvature of at most 1.5 / 6^2: below 1 mm. Between rings, which lie up to 1.4 m apart on the
+// side of the hill that is seen, coarser levels bridge: 1.4^2 / 8 times the same is 1 cm. Twice
+// that is allowed.
+TEST(GroundSurface, AHillIsFollowed) {
+  const Points points = worlds::ring_scan(worlds::coarse_rings(32), 0.81, hill);
+  const Errors errors = errors_of(surface_of(points), points, 40.0, hill);
+  ASSERT_GT(errors.points, 10000);
+  EXPECT_LT(errors.worst, 0.02);
+}
+
+// Eight rings, up to 20 m apart: the reference is exact on them, and between them, where nothing
+// is seen, still the plane.
+TEST(GroundSurface, SparseRingsGiveTheGroundBetweenThem) {
+  const Points points = worlds::tilted(scan_of({}, 8), radians(4.0), -0.1);
+  const GroundSurface surface = surface_of(points);
+  const auto plane = [](double x, double) { return -0.1 - std::tan(radians(4.0)) * x; };
+  EXPECT_LT(errors_of(surface, points, 60.0, plane).worst, 0.01);
+  Points between;
+  worlds::add_flat(between, {-10.0, 10.0, -10.0, 10.0}, 0.5, 0.0);
+  EXPECT_LT(errors_of(surface, between, 10.0, plane).worst, 0.03);
+}
+
+// Reflections on the road: a few beams end 1 m below it, on their own lines, among those
+// whose rings lie less than 5 m apart. (Beyond, where rings lie further apart than a few coarse
+// cells, a low point alone in them can be all that is seen there, and pulls the ground down.)
+// Tolerance: finer levels, whose own tolerance shuts low points out, have to take out what coarse
+// ones took over; 2 cm are left, as with what stands on the ground.
+TEST(GroundSurface, WildPointsBelowTheGroundDoNotPullIt) {
+  for (const std::uint64_t seed : {231, 232, 233, 234, 235, 236}) {
+    Points points = scan_of({}, 32);
+    const Points ground = points;
+    RandomGenerator random(seed);
+    int wild = 0;
+    while (wild < 6) {
+      const std::size_t i = random.below(static_cast<std::uint32_t>(ground.size()));
+      if (std::hypot(ground.x[i], ground.y[i]) > 5.0F) continue;
+      constexpr double kFurther = (0.81 + 1.0) / 0.81;
+      worlds::add_point(points, kFurther * double{ground.x[i]}, kFurther * double{ground.y[i]},
+                        -1.0);
+      ++wild;
+    }
+    const GroundSurface surface = surface_of(points);
+    EXPECT_LT(errors_of(surface, ground, 60.0, level).worst, 0.02) << seed;
+    for (std::size_t k = 0; k < surface.height.size(); ++k) {
+      const CellPoint& point = surface.cells.points[k];
+      if (point.z < -0.5F) {
+        EXPECT_LT(surface.height[k], -0.3F) << seed << ": stays below the ground";
+      }
+    }
+  }
+}
+
+struct Standing {
+  const char* name;
+  std::vector<worlds::Solid> solids;
+};
+std::vector<Standing> things() {
+  const auto box = [](const Rect& rect, double z0, double z1) {
+    return worlds::box_solid(rect, z0, z1, 0);
+  };
+  return {{"wall", {box({6.0, 6.2, -20.0, 20.0}, 0.0, 3.0)}},
+          {"car", {box({4.0, 8.2, 1.5, 3.3}, 0.0, 1.4)}},
+          {"ceiling", {box({-30.0, 30.0, -30.0, 30.0}, 2.5, 2.7)}},
+          {"corridor",
+           {box({-30.0, 30.0, 1.5, 1.7}, 0.0, 2.5), box({-30.0, 30.0, -1.7, -1.5}, 0.0, 2.5),
+            box({-30.0, 30.0, -1.7, 1.7}, 2.5, 2.7)}},
+          {"bridge", {box({8.0, 12.0, -20.0, 20.0}, 1.8, 2.2)}}};
+}
+
+// Tolerance 2 cm on the ground that is seen, in the cells at the feet of walls, too: a sixth of the
+// height from which points count as things.
+TEST(GroundSurface, WhatStandsOnTheGroundDoesNotLiftIt) {
+  for (const Standing& standing : things()) {
+    worlds::Scene scene;
+    scene.solids = standing.solids;
+    const Points points = scan_of(scene, 32);
+    const Errors errors = errors_of(surface_of(points), on_level_ground(points), 60.0, level);
+    ASSERT_GT(errors.points, 1000) << standing.name;
+    EXPECT_LT(errors.worst, 0.02) << standing.name;
+  }
+}
+
+// Nor under the thing itself, where no ground is seen: the sides of the car are tall.
+TEST(GroundSurface, ACarHasItsHeight) {
+  worlds::Scene scene;
+  scene.solids.push_back(worlds::box_solid({4.0, 8.2, 1.5, 3.3}, 0.0, 1.4, 0));
+  const Points points = scan_of(scene, 32);
+  const GroundSurface surface = surface_of(points);
+  float highest = 0.0F;
+  for (std::size_t k = 0; k < surface.height.size(); ++k) {
+    const CellPoint& point = surface.cells.points[k];
+    if (point.z > 1e-3F) {
+      EXPECT_NEAR(surface.height[k], point.z, 0.05) << point.x << " " << point.y;
+    }
+    highest = std::max(highest, surface.height[k]);
+  }
+  EXPECT_GT(highest, 0.7F) << "the beams at 0.81 m meet it";
+}
+
+// Degenerate input.
+TEST(GroundSurface, WithoutPointsItIsThePlaneZero) {
+  Points useless;
+  useless.push_back(kNan, 0.0F, 1.0F);
+  useless.push_back(0.0F, 0.0F, kNan);
+  useless.push_back(1e6F, 0.0F, 0.3F);
+  useless.push_back(0.0F, -1e6F, 0.3F);
+  for (const Points& points : {Points{}, useless}) {
+    const GroundSurface surface = surface_of(points);
+    EXPECT_EQ(surface.cells.occupied(), 0U);
+    EXPECT_TRUE(surface.height.empty());
+    EXPECT_EQ(surface.offset, 0.0F);
+    ASSERT_EQ(surface.node.size(), surface.lattice().size());
+    EXPECT_EQ(std::count(surface.node.begin(), surface.node.end(), 0.0F),
+              static_cast<std::ptrdiff_t>(surface.node.size()));
+    for (const float far : {0.0F, 50.0F, -1e6F, 1e6F}) EXPECT_EQ(surface.height_at(far, far), 0.0F);
+  }
+}
+
+TEST(GroundSurface, FewPointsGiveFiniteGroundNearThem) {
+  struct Case {
+    const char* name;
+    std::vector<std::vector<float>> points;
+  };
+  std::vector<std::vector<float>> equal(100, {2.0F, 1.0F, 0.05F});
+  std::vector<std::vector<float>> line, upright;
+  for (int i = 0; i < 100; ++i) {
+    const auto t = static_cast<float>(i);
+    line.push_back({0.2F * t - 10.0F, 0.1F * t - 5.0F, 0.05F});
+    upright.push_back({2.0F, 1.0F, 0.05F + 0.01F * t});
+  }
+  const std::vector<Case> cases{
+      {"one point", {{2.0F, 1.0F, 0.05F}}},
+      {"two points", {{2.0F, 1.0F, 0.05F}, {-3.0F, 1.0F, 0.05F}}},
+      {"three points", {{2.0F, 1.0F, 0.05F}, {-3.0F, 1.0F, 0.05F}, {0.0F, -4.0F, 0.05F}}},
+      {"all equal", equal},
+      {"a line", line},
+      {"an upright line", upright}};
+  for (const Case& c : cases) {
+    Points points;
+    for (const auto& p : c.points) points.push_back(p[0], p[1], p[2]);
+    const GroundSurface surface = surface_of(points);
+    ASSERT_EQ(surface.height.size(), points.size()) << c.name;
+    for (const float node : surface.node) {
+      ASSERT_TRUE(std::isfinite(node)) << c.name;
+      // Between the plane z = 0 and the low heights of the cells: 0.05 m, or 0.08 m as the mean of
+      // the lowest 6 cm of something upright.
+      ASSERT_GE(node, -0.001F) << c.name;
+      ASSERT_LE(node, 0.081F) << c.name;
+    }
+    for (const float height : surface.height) EXPECT_TRUE(std::isfinite(height)) << c.name;
+    // The points lie within the tolerance of z = 0, so the ground goes up to their low heights.
+    const float expected = c.points == upright ? 0.08F : 0.05F;
+    EXPECT_NEAR(surface.height_at(points.x[0], points.y[0]), expected, 0.02) << c.name;
+  }
+}
+
+// Limits of the plane near the robot: ground that is out of them does not become the plane.
+TEST(GroundSurface, ThePlaneKeepsItsLimits) {
+  GroundSurfaceParams params;
+  params.max_tilt = radians(5.0);
+  const Points steep = worlds::tilted(scan_of({}, 32), radians(12.0));
+  const GroundSurface tilted = surface_of(steep, params);
+  EXPECT_LE(std::hypot(tilted.gradient_x, tilted.gradient_y), std::tan(radians(5.0)) + 1e-6);
+  params = {};
+  params.max_offset = 0.1;
+  const GroundSurface raised = surface_of(worlds::tilted(scan_of({}, 32), 0.0, 0.5), params);
+  EXPECT_LE(std::abs(raised.offset), 0.1F + 1e-6F);
+}
+
+// A platform 0.5 m high, within `max_offset`, over two fifths of the cells near the robot. Cells
+// below a plane count -1, on it 1, above it 0: the ground has 3/5, the platform 2/5 - 3/5 of all
+// votes. A plane aslant may win if it stays within the search's tolerance of 0.1 m, and 0.01 m more
+// per metre: 0.2 m where the cells are.
+TEST(GroundSurface, ThePlaneHasLittleBelowIt) {
+  Points points;
+  worlds::add_surface(points, {-12.0, 12.0, -12.0, 12.0}, 0.1,
+                      [](double x, double) { return x < 2.4 ? 0.0 : 0.5; });
+  const GroundSurface surface = surface_of(points);
+  EXPECT_NEAR(surface.offset, 0.0, 0.2);
+  EXPECT_NEAR(surface.height_at(-9.0F, 0.0F), 0.0, 0.01);
+}
+
+/// A world with something of everything: tilt, a hill, walls, a car.
+Points mixed_world() {
+  worlds::Scene scene;
+  scene.solids.push_back(worlds::box_solid({6.0, 6.2, -20.0, 20.0}, 0.0, 3.0, 0));
+  scene.solids.push_back(worlds::box_solid({-8.2, -4.0, 1.5, 3.3}, 0.0, 1.4, 0));
+  Points points = worlds::tilted(scan_of(scene, 32), radians(3.0), 0.1);
+  worlds::append(points, worlds::ring_scan(worlds::coarse_rings(16), 0.81, [](double x, double y) {
+                   return 0.1 - std::tan(radians(3.0)) * x + 0.02 * std::sin(y);
+                 }));
+  return points;
+}
+
+bool same_bytes(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+TEST(GroundSurface, SameBytesWithUsedMemoryAndNoAllocation) {
+  const Points points = mixed_world();
+  const GroundSurface fresh = surface_of(points);
+  GroundSurface used;
+  GroundSurfaceWorkspace workspace;
+  find_ground_surface(worlds::ring_scan(worlds::coarse_rings(16), 0.81, hill).view(), {}, workspace,
+                      used);
+  for (int run = 0; run < 2; ++run) {
+    find_ground_surface(points.view(), {}, workspace, used);
+    EXPECT_TRUE(same_bytes(used.node, fresh.node)) << run;
+    EXPECT_TRUE(same_bytes(used.height, fresh.height)) << run;
+  }
+  const std::size_t before = bench::allocations();
+  find_ground_surface(points.view(), {}, workspace, used);
+  EXPECT_EQ(bench::allocations(), before);
+}
+
+// Another extent and resolution in between, as a changed parameter file gives.
+TEST(GroundSurface, OtherLatticesLeaveNoTrace) {
+  const Points points = mixed_world();
+  const GroundSurface fresh = surface_of(points);
+  GroundSurface used;
+  GroundSurfaceWorkspace workspace;
+  GroundSurfaceParams other;
+  other.cell_size = 0.2;
+  other.reach = 40.0;
+  find_ground_surface(points.view(), {}, workspace, used);
+  find_ground_surface(points.view(), other, workspace, used);
+  EXPECT_TRUE(same_bytes(used.node, surface_of(points, other).node));
+  find_ground_surface(points.view(), {}, workspace, used);
+  EXPECT_TRUE(same_bytes(used.node, fresh.node));
+}
+
+// Invariant: a quarter turn of the points turns the reference. The plane near the robot is found
+// from samples in the order of the cells, so another one of equal worth may win; the levels take
+// the difference out where there are points.
+TEST(GroundSurface, AQuarterTurnTurnsTheGround) {
+  const Points points = mixed_world();
+  const GroundSurface before = surface_of(points);
+  const GroundSurface after = surface_of(worlds::turned_left(points));
+  double worst = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (std::hypot(points.x[i], points.y[i]) > 30.0F) continue;
+    worst = std::max(worst, std::abs(double{before.height_at(points.x[i], points.y[i])} -
+                                     double{after.height_at(-points.y[i], points.x[i])}));
+  }
+  EXPECT_LT(worst, 0.005);
+}
+
+// Invariant: the order of the points matters to sums of floats only. Low heights of a cell differ
+// by a few units in the last place of 1 m, 1e-7 m; 1e-4 m leaves room for weights.
+TEST(GroundSurface, TheOrderOfThePointsDoesNotMatter) {
+  const Points points = mixed_world();
+  const GroundSurface before = surface_of(points);
+  const GroundSurface after = surface_of(worlds::shuffled(points, 241));
+  ASSERT_EQ(before.node.size(), after.node.size());
+  double worst = 0.0;
+  for (std::size_t k = 0; k < before.node.size(); ++k) {
+    worst = std::max(worst, std::abs(double{before.node[k]} - double{after.node[k]}));
+  }
+  EXPECT_LT(worst, 1e-4);
+}
+
+// The reference covers what was asked for, in whole cells of the coarsest level.
+TEST(GroundSurface, TheLatticeCoversTheReach) {
+  for (const double reach : {5.0, 51.2, 60.0, 102.4}) {
+    for (const double cell : {0.2, 0.4, 1.0}) {
+      GroundSurfaceParams params;
+      params.reach = reach;
+      params.cell_size = cell;
+      const SquareLattice lattice = surface_of({}, params).lattice();
+      EXPECT_GE(lattice.side * cell, 2.0 * reach - 1e-6) << reach << " " << cell;
+      EXPECT_EQ(lattice.side % 128, 0) << reach << " " << cell;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mrpt_terrain
