@@ -32,7 +32,8 @@ std::set<CellCode> free_cells(const ScanCells& cells) {
 void add_ray(const CellGrid& grid, const Place& origin, const Place& end, RayBatch& batch) {
   CellKey from{}, to{};
   ASSERT_TRUE(grid.find_key(origin, from) && grid.find_key(end, to));
-  if (from != to) batch.add(grid, origin, from, end, to);
+  if (from != to) batch.add({grid, origin, from}, end, to, code_of(to));
+  batch.prepare(grid.resolution);
 }
 
 TEST(WalkRays, OracleTheCellsAreThoseOfComputeRayKeys) {

@@ -50,7 +50,7 @@ void walk_plain(Lanes& lanes, Marks& marks) {
 
 #ifdef MRPT_TERRAIN_HAS_VECTORS
 
-#define MRPT_TERRAIN_AVX512 gnu::target("avx512f,avx512dq")
+#define MRPT_TERRAIN_AVX512 gnu::target("avx512f,avx512dq,popcnt")
 
 // Eight of the lanes in registers.
 struct EightLanes {
@@ -78,10 +78,11 @@ struct EightLanes {
 
 // Appends those of the lanes that are in `which`.
 [[MRPT_TERRAIN_AVX512, gnu::always_inline]] inline void append(__m512i cell, __m512i word,
-                                                               __mmask8 which, Marks& marks) {
-  _mm512_storeu_si512(marks.cell + marks.size, _mm512_maskz_compress_epi64(which, cell));
-  _mm512_storeu_si512(marks.word + marks.size, _mm512_maskz_compress_epi64(which, word));
-  marks.size += static_cast<std::size_t>(__builtin_popcount(which));
+                                                               __mmask8 which, Marks& marks,
+                                                               std::size_t& size) {
+  _mm512_storeu_si512(marks.cell + size, _mm512_maskz_compress_epi64(which, cell));
+  _mm512_storeu_si512(marks.word + size, _mm512_maskz_compress_epi64(which, word));
+  size += static_cast<std::size_t>(_mm_popcnt_u32(which));
 }
 
 // The axes along which the lanes go next. Which of those with the same border goes first is the
@@ -107,7 +108,8 @@ template <Ties kTies>
 
 template <Ties kTies>
 [[MRPT_TERRAIN_AVX512, gnu::always_inline]] inline void step_all(const Lanes& lanes,
-                                                                 EightLanes& eight, Marks& marks) {
+                                                                 EightLanes& eight, Marks& marks,
+                                                                 std::size_t& size) {
   const std::size_t first = eight.first;
   const __m512i bits_x = _mm512_set1_epi64(static_cast<long long>(kAxisBits[0]));
   const __m512i bits_y = _mm512_set1_epi64(static_cast<long long>(kAxisBits[1]));
@@ -136,7 +138,7 @@ template <Ties kTies>
   alive = _mm512_mask_cmpneq_epi64_mask(alive, cell, _mm512_load_si512(at(lanes.last)));
   const __mmask8 enters = _mm512_test_epi64_mask(_mm512_xor_si512(cell, before), beyond_word);
   const __mmask8 leaves = _kand_mask8(was_alive, _kor_mask8(enters, _knot_mask8(alive)));
-  append(before, word, leaves, marks);
+  append(before, word, leaves, marks, size);
   const __m512i bit = _mm512_maskz_sllv_epi64(0xff, one, _mm512_and_si512(cell, within_word));
   word = _mm512_mask_or_epi64(bit, _knot_mask8(enters), word, bit);
 }
@@ -158,11 +160,12 @@ template <Ties kTies>
   EightLanes low, high;
   load(lanes, 0, low);
   load(lanes, 8, high);
-  marks.size = 0;
+  std::size_t size = 0;
   for (std::size_t k = 0; k < kChunk && (low.alive | high.alive) != 0; ++k) {
-    step_all<kTies>(lanes, low, marks);
-    step_all<kTies>(lanes, high, marks);
+    step_all<kTies>(lanes, low, marks, size);
+    step_all<kTies>(lanes, high, marks, size);
   }
+  marks.size = size;
   store(low, lanes);
   store(high, lanes);
 }
