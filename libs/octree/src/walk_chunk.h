@@ -26,6 +26,8 @@ struct Lanes {
   alignas(64) CellCode last[kLanes];
   alignas(64) std::uint64_t word[kLanes];  ///< bits of the cells so far in the word of `cell`
   std::uint16_t alive;                     ///< a bit per lane: it has not arrived yet
+  /// Steps after which all lanes are alive, unless one leaves its length before.
+  std::uint32_t surely_alive = 0;
 };
 
 /// Words of 4^3 cells that lanes have left, in no particular order. Cells of a lane that follow

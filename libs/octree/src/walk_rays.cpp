@@ -16,6 +16,12 @@ void load(const Values& from, const std::array<std::uint16_t, kLanes>& rays, Val
 
 std::uint64_t bit_of(CellCode cell) { return std::uint64_t{1} << (cell & 63); }
 
+std::uint32_t fewest_cells(const RayBatch& batch, const std::array<std::uint16_t, kLanes>& rays) {
+  std::uint32_t fewest = batch.cells[rays[0]];
+  for (const std::uint16_t ray : rays) fewest = std::min(fewest, batch.cells[ray]);
+  return fewest;
+}
+
 // Lanes beyond the first `count` stand still.
 void load_lanes(const RayBatch& batch, const std::array<std::uint16_t, kLanes>& rays,
                 std::size_t count, Lanes& lanes) {
@@ -31,6 +37,8 @@ void load_lanes(const RayBatch& batch, const std::array<std::uint16_t, kLanes>& 
   for (std::size_t lane = 0; lane < count; ++lane) {
     if (lanes.cell[lane] != lanes.last[lane]) alive |= 1U << lane;
   }
+  // The last cell is this many steps away, however the ray goes.
+  if (alive == (1U << kLanes) - 1) lanes.surely_alive = fewest_cells(batch, rays) - 1;
   for (std::size_t lane = 0; lane < kLanes; ++lane) lanes.word[lane] = bit_of(lanes.cell[lane]);
   lanes.alive = static_cast<std::uint16_t>(alive);
 }
