@@ -58,7 +58,8 @@ class Collector {
     if (is_short) {
       if (!end_in_range) return;
       const CellCode code = code_of(end_key);
-      workspace_.cells.mark_occupied(code);
+      if (code != last_occupied_) workspace_.cells.mark_occupied(code);
+      last_occupied_ = code;
       add_ray(end, end_key, code);
       return;
     }
@@ -84,6 +85,7 @@ class Collector {
   CollectionWorkspace& workspace_;
   std::uint32_t origin_number_ = 0;
   RayOrigin origin_;
+  CellCode last_occupied_ = ~CellCode{0};  // points side by side often share a cell
   bool origin_is_finite_ = false;
   bool origin_in_range_ = false;
   InsertionResult result_;

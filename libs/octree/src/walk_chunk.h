@@ -14,7 +14,7 @@ namespace mrpt_terrain::octree {
 /// Rays walk side by side, a lane each.
 inline constexpr std::size_t kLanes = 16;
 /// Most steps between two looks at what the lanes have left behind.
-inline constexpr std::size_t kChunk = 32;
+inline constexpr std::size_t kChunk = 64;
 
 /// State of the rays; what the arrays mean is said at `RayBatch`.
 struct Lanes {
