@@ -19,7 +19,7 @@ struct Layer {
   int scans = 0;
   int bins = 0;
   double last_seen = 0.0;
-  Moments moments;  // about the centre of the cell
+  double n = 0.0;  // points
 };
 
 // Adds a set to another that is not empty (Chan, Golub and LeVeque 1979).
@@ -62,7 +62,9 @@ class LayerWalk {
   }
 
   /// The next layer, which is passed.
-  Layer take() {
+  /// \param[out] points its points, about the centre of the cell; in their place at once, because
+  /// copying what was just written makes the processor wait
+  Layer take(Moments& points) {
     Layer layer;
     layer.number = bin_->layer;
     const double bottom = reader_.map.lattice.bottom_of(layer.number);
@@ -71,15 +73,16 @@ class LayerWalk {
     layer.scans = bin_->scans;
     layer.bins = 1;
     layer.last_seen = bin_->last_seen;
-    layer.moments = moments_of(*bin_, reader_.map.lattice);
+    points = moments_of(*bin_, reader_.map.lattice);
     for (go_to(bin_->next); !done() && bin_->layer == layer.number; go_to(bin_->next)) {
       layer.z_min = std::min(layer.z_min, bottom + double{bin_->z_min});
       layer.z_max = std::max(layer.z_max, bottom + double{bin_->z_max});
       layer.scans += bin_->scans;
       layer.last_seen = std::max(layer.last_seen, bin_->last_seen);
       ++layer.bins;
-      add(moments_of(*bin_, reader_.map.lattice), layer.moments);
+      add(moments_of(*bin_, reader_.map.lattice), points);
     }
+    layer.n = points.n;
     return layer;
   }
 
@@ -109,26 +112,26 @@ double points_of_fullest_layer(LayerWalk walk) {
   return most;
 }
 
-// The lowest layer that is no outlier; those below are counted.
+// The lowest layer that is no outlier, with its points in `cell`; those below are counted.
 Layer take_ground(const CellReader& reader, LayerWalk& walk, FusedCell& cell) {
   const LayerWalk whole = walk;
   double least_points = -1.0;  // not known yet: most cells do without
   for (;;) {
-    Layer layer = walk.take();
+    const Layer layer = walk.take(cell.moments);
     if (walk.done() || layer.scans >= kPersistent) return layer;
     if (least_points < 0.0) {
       least_points = reader.params.least_share * points_of_fullest_layer(whole);
     }
-    if (layer.moments.n >= least_points) return layer;
-    cell.below += static_cast<std::int32_t>(layer.moments.n);
+    if (layer.n >= least_points) return layer;
+    cell.below += static_cast<std::int32_t>(layer.n);
   }
 }
 
-void count_in(const Layer& layer, FusedCell& cell) {
+void count_in(const Layer& layer, const Moments& points, FusedCell& cell) {
   cell.h_max = std::max(cell.h_max, layer.z_max);
   cell.last_seen = std::max(cell.last_seen, layer.last_seen);
   cell.bins += layer.bins;
-  add(layer.moments, cell.moments);
+  add(points, cell.moments);
 }
 
 /// The heights of a set of points.
@@ -177,23 +180,23 @@ bool read_cell(const CellReader& reader, TileIndex index, const Tile& tile, std:
   cell.h_max = ground.z_max;
   cell.last_seen = ground.last_seen;
   cell.bins = ground.bins;
-  cell.moments = ground.moments;
-  Heights surface(ground.moments);
+  Heights surface(cell.moments);
   Heights top = surface;
   const bool is_flat = walk.done();
   const double limit = reader.params.spread_limit;
   const double spread = limit * surface.sigma();
   cell.low = std::max(cell.h_min, surface.mean - spread);
+  Moments points;
   while (!walk.done()) {
-    const Layer layer = walk.take();
+    const Layer layer = walk.take(points);
     if (hangs_over(layer, ground, cell.free, reader)) {
       cell.overhung = true;
       cell.overhang = layer.z_min;
       break;
     }
-    if (continues(layer, ground, reader.map.lattice)) add(layer.moments, surface);
-    count_in(layer, cell);
-    top = Heights(layer.moments);
+    if (continues(layer, ground, reader.map.lattice)) add(points, surface);
+    count_in(layer, points, cell);
+    top = Heights(points);
   }
   cell.high = std::min(cell.h_max, top.mean + (is_flat ? spread : limit * top.sigma()));
   cell.height = surface.mean;

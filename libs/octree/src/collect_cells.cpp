@@ -19,9 +19,10 @@ class Collector {
 
   void set_origin(std::uint32_t number, const Place& place) {
     origin_number_ = number;
-    origin_ = place;
     origin_is_finite_ = is_finite(place);
-    origin_in_range_ = origin_is_finite_ && grid_.find_key(place, origin_key_);
+    CellKey key{};
+    origin_in_range_ = origin_is_finite_ && grid_.find_key(place, key);
+    origin_ = {grid_, place, key};
   }
   [[nodiscard]] std::uint32_t origin_number() const { return origin_number_; }
 
@@ -46,39 +47,45 @@ class Collector {
   }
 
   [[nodiscard]] InsertionResult finish() {
-    walk_rays<kTies>(workspace_.batch, workspace_.cells);
+    walk();
     return result_;
   }
 
  private:
   void add_measured(const Place& end, const CellKey& end_key, bool end_in_range) {
     const bool is_short =
-        options_.max_range < 0.0 || distance_between(origin_, end) <= options_.max_range;
+        options_.max_range < 0.0 || distance_between(origin_.place, end) <= options_.max_range;
     if (is_short) {
       if (!end_in_range) return;
-      workspace_.cells.mark_occupied(code_of(end_key));
-      add_ray(end, end_key);
+      const CellCode code = code_of(end_key);
+      if (code != last_occupied_) workspace_.cells.mark_occupied(code);
+      last_occupied_ = code;
+      add_ray(end, end_key, code);
       return;
     }
-    const Place cut = cut_ray(origin_, end, options_.max_range);
+    const Place cut = cut_ray(origin_.place, end, options_.max_range);
     CellKey cut_key{};
-    if (grid_.find_key(cut, cut_key)) add_ray(cut, cut_key);
+    if (grid_.find_key(cut, cut_key)) add_ray(cut, cut_key, code_of(cut_key));
   }
 
-  void add_ray(const Place& end, const CellKey& end_key) {
+  void add_ray(const Place& end, const CellKey& key, CellCode code) {
     ++result_.rays;
-    if (!origin_in_range_ || end_key == origin_key_) return;
-    RayBatch& batch = workspace_.batch;
-    batch.add(grid_, origin_, origin_key_, end, end_key);
-    if (batch.size == RayBatch::kCapacity) walk_rays<kTies>(batch, workspace_.cells);
+    if (!origin_in_range_ || code == origin_.code) return;
+    workspace_.batch.add(origin_, end, key, code);
+    if (workspace_.batch.size == RayBatch::kCapacity) walk();
+  }
+
+  void walk() {
+    workspace_.batch.prepare(grid_.resolution);
+    walk_rays<kTies>(workspace_.batch, workspace_.cells);
   }
 
   const InsertionOptions& options_;
   CellGrid grid_;
   CollectionWorkspace& workspace_;
   std::uint32_t origin_number_ = 0;
-  Place origin_{};
-  CellKey origin_key_{};
+  RayOrigin origin_;
+  CellCode last_occupied_ = ~CellCode{0};  // points side by side often share a cell
   bool origin_is_finite_ = false;
   bool origin_in_range_ = false;
   InsertionResult result_;

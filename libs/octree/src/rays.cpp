@@ -5,7 +5,47 @@
 #include <cstdlib>
 #include <limits>
 
+#include "wide_registers.h"
+
 namespace mrpt_terrain::octree {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::max();
+
+MRPT_TERRAIN_WIDE_REGISTERS
+void find_lengths(RayBatch& rays) {
+  for (std::size_t k = 0; k < rays.size; ++k) {
+    const float x = rays.end[0][k] - rays.origin[0][k];
+    const float y = rays.end[1][k] - rays.origin[1][k];
+    const float z = rays.end[2][k] - rays.origin[2][k];
+    rays.length[k] = double{static_cast<float>(std::sqrt(double{x * x + y * y + z * z}))};
+    // Coordinates so small that the length of the ray is no number above zero: OctoMap's walk ends
+    // in the first step or never.
+    const bool walks = (rays.length[k] > 0.0) & (rays.length[k] <= kNever);
+    rays.last[k] = walks ? rays.last[k] : rays.first[k];
+  }
+}
+
+// Directions in float, borders in double, as in OctoMap.
+MRPT_TERRAIN_WIDE_REGISTERS
+void find_borders(std::size_t axis, double resolution, RayBatch& rays) {
+  const double half_cell = double{static_cast<float>(resolution * 0.5)};
+  const CellCode up = CellCode{1} << axis;
+  const CellCode down = kAxisBits[axis];
+  for (std::size_t k = 0; k < rays.size; ++k) {
+    const float origin = rays.origin[axis][k];
+    const float direction = (rays.end[axis][k] - origin) / static_cast<float>(rays.length[k]);
+    const double border = rays.centre[axis][k] + (direction > 0.0F ? half_cell : -half_cell);
+    const double crossing = (border - double{origin}) / double{direction};
+    const double spacing = resolution / double{std::abs(direction)};
+    const bool moves = (direction > 0.0F) | (direction < 0.0F);
+    rays.crossing[axis][k] = moves ? crossing : kNever;
+    rays.spacing[axis][k] = moves ? spacing : kNever;
+    rays.step[axis][k] = direction > 0.0F ? up : (direction < 0.0F ? down : 0);
+  }
+}
+
+}  // namespace
 
 bool CellGrid::find_key(const Place& place, CellKey& key) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -35,33 +75,28 @@ Place cut_ray(const Place& origin, const Place& end, double range) {
   return cut;
 }
 
-void RayBatch::add(const CellGrid& grid, const Place& origin, const CellKey& origin_key,
-                   const Place& end, const CellKey& end_key) {
-  constexpr double kNever = std::numeric_limits<double>::max();
-  const auto ray_length = static_cast<float>(distance_between(origin, end));
+RayOrigin::RayOrigin(const CellGrid& grid, const Place& at, const CellKey& its_key)
+    : place(at), key(its_key), code(code_of(its_key)) {
+  for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = grid.centre(key[axis]);
+}
+
+void RayBatch::add(const RayOrigin& from, const Place& to, const CellKey& to_key,
+                   CellCode to_code) {
   const std::size_t k = size++;
-  length[k] = double{ray_length};
-  first[k] = code_of(origin_key);
-  last[k] = code_of(end_key);
+  first[k] = from.code;
+  last[k] = to_code;
   cells[k] = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const float direction = (end[axis] - origin[axis]) / ray_length;
-    cells[k] += static_cast<std::uint32_t>(std::abs(int{end_key[axis]} - int{origin_key[axis]}));
-    if (!(direction > 0.0F || direction < 0.0F)) {
-      step[axis][k] = 0;
-      crossing[axis][k] = spacing[axis][k] = kNever;
-      continue;
-    }
-    const double sign = direction > 0.0F ? 1.0 : -1.0;
-    const auto half_cell = static_cast<float>(sign * grid.resolution * 0.5);
-    const double border = grid.centre(origin_key[axis]) + double{half_cell};
-    step[axis][k] = direction > 0.0F ? CellCode{1} << axis : kAxisBits[axis];
-    crossing[axis][k] = (border - double{origin[axis]}) / double{direction};
-    spacing[axis][k] = grid.resolution / double{std::abs(direction)};
+    origin[axis][k] = from.place[axis];
+    end[axis][k] = to[axis];
+    centre[axis][k] = from.centre[axis];
+    cells[k] += static_cast<std::uint32_t>(std::abs(int{to_key[axis]} - int{from.key[axis]}));
   }
-  // Coordinates so small that the length of the ray is no number above zero: OctoMap's walk ends
-  // in the first step or never.
-  if (!(length[k] > 0.0 && length[k] <= kNever)) last[k] = first[k];
+}
+
+void RayBatch::prepare(double resolution) {
+  find_lengths(*this);
+  for (std::size_t axis = 0; axis < 3; ++axis) find_borders(axis, resolution, *this);
 }
 
 }  // namespace mrpt_terrain::octree

@@ -37,23 +37,41 @@ struct CellGrid {
 /// End of a ray that is cut at `range`, metres.
 [[nodiscard]] Place cut_ray(const Place& origin, const Place& end, double range);
 
+/// Where rays begin.
+struct RayOrigin {
+  Place place{};
+  CellKey key{};
+  CellCode code = 0;               ///< of `key`
+  std::array<double, 3> centre{};  ///< of its cell, metres
+
+  RayOrigin() = default;
+  RayOrigin(const CellGrid& grid, const Place& at, const CellKey& its_key);
+};
+
 /// A number of rays, structure of arrays.
 struct RayBatch {
   static constexpr std::size_t kCapacity = 512;
+  template <class T>
+  using Row = std::array<T, kCapacity>;
+
   std::size_t size = 0;
+  // Given with `add`.
+  alignas(64) std::array<Row<float>, 3> origin, end;  ///< metres
+  alignas(64) std::array<Row<double>, 3> centre;      ///< of the first cell, metres
+  alignas(64) Row<CellCode> first, last;
+  Row<std::uint32_t> cells;  ///< steps from the first cell to the last
+  // Computed by `prepare`.
   /// Per axis: where along the ray the next border of cells is crossed, and how far apart the
   /// borders are, metres; the greatest double for an axis along which the ray does not move.
-  alignas(64) std::array<std::array<double, kCapacity>, 3> crossing;
-  alignas(64) std::array<std::array<double, kCapacity>, 3> spacing;
-  alignas(64) std::array<double, kCapacity> length;  ///< metres
-  alignas(64) std::array<CellCode, kCapacity> first, last;
+  alignas(64) std::array<Row<double>, 3> crossing, spacing;
+  alignas(64) Row<double> length;  ///< metres
   /// Per axis: +1, 0 or -1 as bits of that axis in a code.
-  alignas(64) std::array<std::array<CellCode, kCapacity>, 3> step;
-  std::array<std::uint32_t, kCapacity> cells;  ///< steps from the first cell to the last
+  alignas(64) std::array<Row<CellCode>, 3> step;
 
   /// Adds a ray between different cells.
-  void add(const CellGrid& grid, const Place& origin, const CellKey& origin_key, const Place& end,
-           const CellKey& end_key);
+  void add(const RayOrigin& from, const Place& to, const CellKey& to_key, CellCode to_code);
+  /// Computes what the walk needs of all rays, for cells of `resolution` metres.
+  void prepare(double resolution);
 };
 
 }  // namespace mrpt_terrain::octree

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "walk_chunk.h"
 
+#include <algorithm>
+
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>
 #define MRPT_TERRAIN_HAS_VECTORS
@@ -50,7 +52,7 @@ void walk_plain(Lanes& lanes, Marks& marks) {
 
 #ifdef MRPT_TERRAIN_HAS_VECTORS
 
-#define MRPT_TERRAIN_AVX512 gnu::target("avx512f,avx512dq")
+#define MRPT_TERRAIN_AVX512 gnu::target("avx512f,avx512dq,popcnt")
 
 // Eight of the lanes in registers.
 struct EightLanes {
@@ -78,10 +80,11 @@ struct EightLanes {
 
 // Appends those of the lanes that are in `which`.
 [[MRPT_TERRAIN_AVX512, gnu::always_inline]] inline void append(__m512i cell, __m512i word,
-                                                               __mmask8 which, Marks& marks) {
-  _mm512_storeu_si512(marks.cell + marks.size, _mm512_maskz_compress_epi64(which, cell));
-  _mm512_storeu_si512(marks.word + marks.size, _mm512_maskz_compress_epi64(which, word));
-  marks.size += static_cast<std::size_t>(__builtin_popcount(which));
+                                                               __mmask8 which, Marks& marks,
+                                                               std::size_t& size) {
+  _mm512_storeu_si512(marks.cell + size, _mm512_maskz_compress_epi64(which, cell));
+  _mm512_storeu_si512(marks.word + size, _mm512_maskz_compress_epi64(which, word));
+  size += static_cast<std::size_t>(_mm_popcnt_u32(which));
 }
 
 // The axes along which the lanes go next. Which of those with the same border goes first is the
@@ -105,15 +108,16 @@ template <Ties kTies>
   return axes;
 }
 
-template <Ties kTies>
+// The next step of eight lanes. Without `kMayArrive`, all are alive and stay so.
+template <Ties kTies, bool kMayArrive>
 [[MRPT_TERRAIN_AVX512, gnu::always_inline]] inline void step_all(const Lanes& lanes,
-                                                                 EightLanes& eight, Marks& marks) {
+                                                                 EightLanes& eight, Marks& marks,
+                                                                 std::size_t& size) {
   const std::size_t first = eight.first;
   const __m512i bits_x = _mm512_set1_epi64(static_cast<long long>(kAxisBits[0]));
   const __m512i bits_y = _mm512_set1_epi64(static_cast<long long>(kAxisBits[1]));
   const __m512i bits_z = _mm512_set1_epi64(static_cast<long long>(kAxisBits[2]));
   const __m512i one = _mm512_set1_epi64(1);
-  const __m512i within_word = _mm512_set1_epi64(63);
   const __m512i beyond_word = _mm512_set1_epi64(~63LL);
   const auto at = [first](const auto* row) { return row + first; };
   auto& [unused, tx, ty, tz, next, cell, word, alive] = eight;
@@ -131,14 +135,19 @@ template <Ties kTies>
   ty = _mm512_mask_add_pd(ty, y, ty, _mm512_load_pd(at(lanes.spacing[1])));
   tz = _mm512_mask_add_pd(tz, z, tz, _mm512_load_pd(at(lanes.spacing[2])));
   next = least(tx, ty, tz);
-  const __mmask8 was_alive = alive;
-  alive = _mm512_mask_cmp_pd_mask(alive, next, _mm512_load_pd(at(lanes.length)), _CMP_LE_OQ);
-  alive = _mm512_mask_cmpneq_epi64_mask(alive, cell, _mm512_load_si512(at(lanes.last)));
-  const __mmask8 enters = _mm512_test_epi64_mask(_mm512_xor_si512(cell, before), beyond_word);
-  const __mmask8 leaves = _kand_mask8(was_alive, _kor_mask8(enters, _knot_mask8(alive)));
-  append(before, word, leaves, marks);
-  const __m512i bit = _mm512_maskz_sllv_epi64(0xff, one, _mm512_and_si512(cell, within_word));
-  word = _mm512_mask_or_epi64(bit, _knot_mask8(enters), word, bit);
+  const __mmask8 stays = _mm512_testn_epi64_mask(_mm512_xor_si512(cell, before), beyond_word);
+  __mmask8 leaves;
+  if constexpr (kMayArrive) {
+    const __mmask8 was_alive = alive;
+    alive = _mm512_mask_cmp_pd_mask(alive, next, _mm512_load_pd(at(lanes.length)), _CMP_LE_OQ);
+    alive = _mm512_mask_cmpneq_epi64_mask(alive, cell, _mm512_load_si512(at(lanes.last)));
+    leaves = _kandn_mask8(_kand_mask8(stays, alive), was_alive);
+  } else {
+    leaves = _knot_mask8(stays);
+  }
+  append(before, word, leaves, marks, size);
+  const __m512i bit = _mm512_maskz_rolv_epi64(0xff, one, cell);  // by the lowest six bits
+  word = _mm512_mask_or_epi64(bit, stays, word, bit);
 }
 
 [[MRPT_TERRAIN_AVX512]] void store(const EightLanes& eight, Lanes& lanes) {
@@ -152,17 +161,52 @@ template <Ties kTies>
 }
 
 // Two times eight lanes take turns: a step of one does not wait for the step of the other.
+template <Ties kTies, bool kMayArrive>
+[[MRPT_TERRAIN_AVX512, gnu::always_inline]] inline void walk_steps(const Lanes& lanes,
+                                                                   std::size_t steps,
+                                                                   EightLanes& low,
+                                                                   EightLanes& high, Marks& marks) {
+  std::size_t size = 0;
+  for (std::size_t k = 0; k < steps; ++k) {
+    if (kMayArrive && (low.alive | high.alive) == 0) break;
+    step_all<kTies, kMayArrive>(lanes, low, marks, size);
+    step_all<kTies, kMayArrive>(lanes, high, marks, size);
+  }
+  marks.size = size;
+}
+
+// Whether the next border is within the length of all lanes. It was then at all steps before.
+[[MRPT_TERRAIN_AVX512]] bool is_within_length(const Lanes& lanes, const EightLanes& eight) {
+  const __m512d length = _mm512_load_pd(lanes.length + eight.first);
+  return _mm512_cmp_pd_mask(eight.next, length, _CMP_LE_OQ) == 0xff;
+}
+
+// Lanes that are too far from their last cells to arrive within so many steps, walk that many.
 template <Ties kTies>
-[[MRPT_TERRAIN_AVX512]] void walk_avx512(Lanes& lanes, Marks& marks) {
-  static_assert(kLanes == 16);
+[[MRPT_TERRAIN_AVX512]] bool walk_on(Lanes& lanes, std::size_t steps, Marks& marks) {
   EightLanes low, high;
   load(lanes, 0, low);
   load(lanes, 8, high);
-  marks.size = 0;
-  for (std::size_t k = 0; k < kChunk && (low.alive | high.alive) != 0; ++k) {
-    step_all<kTies>(lanes, low, marks);
-    step_all<kTies>(lanes, high, marks);
+  walk_steps<kTies, false>(lanes, steps, low, high, marks);
+  if (!is_within_length(lanes, low) || !is_within_length(lanes, high)) return false;
+  store(low, lanes);
+  store(high, lanes);
+  return true;
+}
+
+template <Ties kTies>
+[[MRPT_TERRAIN_AVX512]] void walk_avx512(Lanes& lanes, Marks& marks) {
+  static_assert(kLanes == 16);
+  const std::size_t surely = std::min<std::size_t>(lanes.surely_alive, kChunk);
+  if (surely > 0) {
+    lanes.surely_alive -= static_cast<std::uint32_t>(surely);
+    if (walk_on<kTies>(lanes, surely, marks)) return;
+    lanes.surely_alive = 0;
   }
+  EightLanes low, high;
+  load(lanes, 0, low);
+  load(lanes, 8, high);
+  walk_steps<kTies, true>(lanes, kChunk, low, high, marks);
   store(low, lanes);
   store(high, lanes);
 }

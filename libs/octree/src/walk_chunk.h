@@ -14,7 +14,7 @@ namespace mrpt_terrain::octree {
 /// Rays walk side by side, a lane each.
 inline constexpr std::size_t kLanes = 16;
 /// Most steps between two looks at what the lanes have left behind.
-inline constexpr std::size_t kChunk = 32;
+inline constexpr std::size_t kChunk = 64;
 
 /// State of the rays; what the arrays mean is said at `RayBatch`.
 struct Lanes {
@@ -26,6 +26,8 @@ struct Lanes {
   alignas(64) CellCode last[kLanes];
   alignas(64) std::uint64_t word[kLanes];  ///< bits of the cells so far in the word of `cell`
   std::uint16_t alive;                     ///< a bit per lane: it has not arrived yet
+  /// Steps after which all lanes are alive, unless one leaves its length before.
+  std::uint32_t surely_alive = 0;
 };
 
 /// Words of 4^3 cells that lanes have left, in no particular order. Cells of a lane that follow

@@ -16,6 +16,12 @@ void load(const Values& from, const std::array<std::uint16_t, kLanes>& rays, Val
 
 std::uint64_t bit_of(CellCode cell) { return std::uint64_t{1} << (cell & 63); }
 
+std::uint32_t fewest_cells(const RayBatch& batch, const std::array<std::uint16_t, kLanes>& rays) {
+  std::uint32_t fewest = batch.cells[rays[0]];
+  for (const std::uint16_t ray : rays) fewest = std::min(fewest, batch.cells[ray]);
+  return fewest;
+}
+
 // Lanes beyond the first `count` stand still.
 void load_lanes(const RayBatch& batch, const std::array<std::uint16_t, kLanes>& rays,
                 std::size_t count, Lanes& lanes) {
@@ -31,6 +37,8 @@ void load_lanes(const RayBatch& batch, const std::array<std::uint16_t, kLanes>& 
   for (std::size_t lane = 0; lane < count; ++lane) {
     if (lanes.cell[lane] != lanes.last[lane]) alive |= 1U << lane;
   }
+  // The last cell is this many steps away, however the ray goes.
+  if (alive == (1U << kLanes) - 1) lanes.surely_alive = fewest_cells(batch, rays) - 1;
   for (std::size_t lane = 0; lane < kLanes; ++lane) lanes.word[lane] = bit_of(lanes.cell[lane]);
   lanes.alive = static_cast<std::uint16_t>(alive);
 }
@@ -44,9 +52,29 @@ void mark_where_they_stand(const Lanes& lanes, std::size_t count, ScanCells& cel
   }
 }
 
+// Joins marks that follow each other and are of the same word: rays of neighbouring beams enter
+// most words together. Without branches, which would be hard to predict.
+void join_neighbours(Marks& marks) {
+  if (marks.size == 0) return;
+  marks.cell[marks.size] = ~marks.cell[marks.size - 1];  // ends the last run
+  std::size_t size = 0;
+  std::uint64_t word = 0;
+  for (std::size_t k = 0; k < marks.size; ++k) {
+    const CellCode cell = marks.cell[k];
+    word |= marks.word[k];
+    marks.cell[size] = cell;
+    marks.word[size] = word;
+    const bool ends = (cell ^ marks.cell[k + 1]) > 63;
+    size += ends ? 1 : 0;
+    word &= std::uint64_t{ends} - 1;
+  }
+  marks.size = size;
+}
+
 void walk_lanes(ChunkWalker walk_chunk, Lanes& lanes, Marks& marks, ScanCells& cells) {
   while (lanes.alive != 0) {
     walk_chunk(lanes, marks);
+    join_neighbours(marks);
     for (std::size_t k = 0; k < marks.size; ++k) cells.mark_free(marks.cell[k], marks.word[k]);
   }
 }

@@ -13,9 +13,9 @@ enum class Ties {
 };
 
 /// Marks the cells that the rays cross as free, without the cells that they end in, and empties
-/// the batch. A ray ends with its last cell, or where the next border is beyond its length:
-/// rounding can lead it past its last cell. (after Amanatides and Woo, A Fast Voxel Traversal
-/// Algorithm for Ray Tracing, 1987)
+/// the batch, which has to be prepared. A ray ends with its last cell, or where the next border is
+/// beyond its length: rounding can lead it past its last cell. (after Amanatides and Woo, A Fast
+/// Voxel Traversal Algorithm for Ray Tracing, 1987)
 template <Ties kTies>
 void walk_rays(RayBatch& rays, ScanCells& cells);
 
