@@ -39,6 +39,7 @@ Cells drawn(const Rows& rows) {
   for (auto* values : {&field.ground, &field.low, &field.high, &field.floor, &field.rim})
     values->assign(n, 0.0F);
   for (auto* counts : {&field.on, &field.above, &field.below}) counts->assign(n, 0);
+  field.deck.assign(n, -1);
   for (std::size_t slot = 0; slot < n; ++slot) {
     const CellIndex at = result.grid.geometry.index_of(result.grid.cell[slot]);
     const char mark = rows[static_cast<std::size_t>(at.l)][static_cast<std::size_t>(at.w)];

@@ -39,6 +39,7 @@ Heights heights_in(const CellPoints& cells, std::size_t slot, const LevelView::L
 
 struct LowBand {
   float lowest, mean;
+  float points;
   float share;  // of the band's points, those above it counted `kHighPointWeight` times
 };
 
@@ -54,7 +55,7 @@ LowBand low_band_of(const Heights& heights, float band) {
     sum += in_band * above;
     high += above > band && above < kHighPart ? 1.0F : 0.0F;
   }
-  return {lowest, lowest + sum / low, low / (low + kHighPointWeight * high)};
+  return {lowest, lowest + sum / low, low, low / (low + kHighPointWeight * high)};
 }
 
 LowSums low_sums_of(const Heights& heights, float top) {
@@ -206,6 +207,7 @@ void measure_ground_cells(const GroundSurfaceParams& params, GroundSurfaceWorksp
     workspace.sums[slot] = low_sums_of(heights, band.lowest + static_cast<float>(params.low_part));
     workspace.part[slot] = band.share;
     surface.ground[slot].low = band.mean;
+    surface.ground[slot].points = band.points;
   }
   measure_smoothness(params, workspace, surface);
   set_weights(params, workspace, surface);
@@ -220,6 +222,7 @@ void measure_above_level(const GroundSurfaceParams& params, int level,
     const LowBand band = low_band_of(heights, static_cast<float>(params.low_band));
     workspace.part[slot] = band.share;
     surface.ground[slot].low = heights.reference.height + band.mean;
+    surface.ground[slot].points = band.points;
   }
   set_weights(params, workspace, surface);
 }

@@ -12,6 +12,9 @@ constexpr int kTop = kSurfaceLevels - 1;
 constexpr int corrections(int level) { return level == 0 ? 1 : 2; }
 // A cell that is seen by many others counts as this many at most.
 constexpr float kMostCells = 4.0F;
+// On coarser levels, whose tolerance is wide, a single point may be wild, and does not count more
+// for lying low.
+constexpr int kFineLevel = 2;
 // Weight of a height below the reference is at least this share of that of a perfect cell: what is
 // low limits the ground, however rough it is.
 constexpr float kLeastBelow = 0.1F;
@@ -60,8 +63,8 @@ void sum_differences(const GroundSurfaceParams& params, int level,
         level == 0 ? view.height[surface.cells.number_of(cell)] : view.at_cell(cell, level).height;
     const float difference = ground.low - reference;
     if (!(difference <= above && difference >= below)) continue;
-    const float weight =
-        difference < 0.0F ? low_weight * std::max(ground.weight, kLeastBelow) : ground.weight;
+    const bool limits = difference < 0.0F && (ground.points > 1.0F || level <= kFineLevel);
+    const float weight = limits ? low_weight * std::max(ground.weight, kLeastBelow) : ground.weight;
     const std::int32_t at = (cell.row >> level) * view.side + (cell.column >> level);
     LevelSums& sums = workspace.level_sums[static_cast<std::size_t>(at)];
     if (sums.cell_weight == 0.0F) workspace.touched.push_back(at);

@@ -68,6 +68,7 @@ struct GroundSurfaceParams {
 /// What the points of an occupied cell say of the ground in it. Metres, frame of the scan.
 struct GroundCell {
   float low = 0.0F;     ///< mean height of the points of its low band
+  float points = 0.0F;  ///< how many they are
   float smooth = 0.0F;  ///< 0 to 1: 1 / (1 + (roughness / smooth_sigma)^4)
   float weight = 0.0F;  ///< of `low` in the reference, 0 to 1
 };
