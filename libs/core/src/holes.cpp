@@ -15,6 +15,10 @@ constexpr int kBaseLevel = 3;
 constexpr int kRimLevel = 1;
 // Ground this far below the first mean is no rim, metres.
 constexpr float kBelowRim = 0.02F;
+// Things that begin at this height above the ground hang, metres.
+constexpr float kHanging = 0.5F;
+// Walls of a hole end up to this far above its rim, metres.
+constexpr float kWallTop = 0.05F;
 // Cells around a hole that are looked at: up to this many cells away.
 constexpr int kRimReach = 2;
 
@@ -110,6 +114,13 @@ float depth_of(const FieldCells& cells, std::size_t slot) {
   return cells.rim[slot] - cells.floor[slot];
 }
 
+// What stands in a hole stays a thing of its own; what hangs over it does not matter, and points
+// above the floor, but not above the rim, are of its walls.
+bool holds_thing(const FieldCells& cells, std::size_t slot) {
+  if (cells.above[slot] == 0 || cells.low[slot] > kHanging) return false;
+  return cells.ground[slot] + cells.high[slot] > cells.rim[slot] + kWallTop;
+}
+
 void mark_candidates(const FieldWorkspace& field, const ElevationGrid& grid,
                      const HoleParams& params, HoleWorkspace& workspace, FieldCells& cells) {
   const auto least = static_cast<float>(params.least_depth);
@@ -120,8 +131,7 @@ void mark_candidates(const FieldWorkspace& field, const ElevationGrid& grid,
     const Position2 centre = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[slot]));
     cells.rim[slot] = rim_at(field.surface, workspace, static_cast<float>(centre.x),
                              static_cast<float>(centre.y), cells.ground[slot]);
-    // What stands in a hole stays a thing of its own.
-    const bool floor = cells.above[slot] == 0 && cells.on[slot] + cells.below[slot] > 0;
+    const bool floor = !holds_thing(cells, slot) && cells.on[slot] + cells.below[slot] > 0;
     workspace.candidate[slot] = floor && depth_of(cells, slot) >= least ? 1 : 0;
   }
 }
