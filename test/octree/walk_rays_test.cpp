@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -125,7 +126,8 @@ Lanes random_lanes(RandomGenerator& random) {
 using Words = std::multiset<std::pair<CellCode, std::uint64_t>>;
 
 /// All that lanes leave behind.
-Words walk_to_end(ChunkWalker walker, Lanes lanes) {
+Words walk_to_end(ChunkWalker walker, const Lanes& start) {
+  Lanes lanes = start;
   Words words;
   Marks marks;
   while (lanes.alive != 0) {
@@ -133,6 +135,41 @@ Words walk_to_end(ChunkWalker walker, Lanes lanes) {
     for (std::size_t k = 0; k < marks.size; ++k) words.emplace(marks.cell[k], marks.word[k]);
   }
   return words;
+}
+
+/// Random marks, with runs of the same word.
+Marks random_marks(RandomGenerator& random) {
+  Marks marks;
+  marks.size = random.below(kChunk * kLanes + 1);
+  CellCode word = 0;
+  for (std::size_t k = 0; k < marks.size; ++k) {
+    if (random.below(4) == 0) word = random.below(3);
+    marks.cell[k] = word << 6 | random.below(64);
+    marks.word[k] = std::uint64_t{1} << random.below(64);
+  }
+  return marks;
+}
+
+std::map<CellCode, std::uint64_t> bits_of(const Marks& marks) {
+  std::map<CellCode, std::uint64_t> bits;
+  for (std::size_t k = 0; k < marks.size; ++k) bits[marks.cell[k] >> 6] |= marks.word[k];
+  return bits;
+}
+
+TEST(MarkJoiners, InvariantTheBitsOfAllWordsStayAndNeighboursAreJoined) {
+  RandomGenerator random(3);
+  for (int round = 0; round < 2000; ++round) {
+    const Marks marks = random_marks(random);
+    for (const MarkJoiner join : mark_joiners()) {
+      Marks joined = marks;
+      join(joined);
+      ASSERT_EQ(bits_of(joined), bits_of(marks)) << round;
+      ASSERT_LE(joined.size, marks.size);
+      if (marks.size > 100) {
+        ASSERT_LT(joined.size, marks.size);
+      }
+    }
+  }
 }
 
 TEST(WalkChunk, OracleAllVersionsGiveTheSameBits) {

@@ -61,11 +61,9 @@ class LayerWalk {
     return n;
   }
 
-  /// The next layer, which is passed.
-  /// \param[out] points its points, about the centre of the cell; in their place at once, because
-  /// copying what was just written makes the processor wait
-  Layer take(Moments& points) {
-    Layer layer;
+  /// The next layer, which is passed, and its points about the centre of the cell. In their places
+  /// at once: the processor waits where what was just written is copied.
+  void take(Layer& layer, Moments& points) {
     layer.number = bin_->layer;
     const double bottom = reader_.map.lattice.bottom_of(layer.number);
     layer.z_min = bottom + double{bin_->z_min};
@@ -83,7 +81,6 @@ class LayerWalk {
       add(moments_of(*bin_, reader_.map.lattice), points);
     }
     layer.n = points.n;
-    return layer;
   }
 
  private:
@@ -113,17 +110,17 @@ double points_of_fullest_layer(LayerWalk walk) {
 }
 
 // The lowest layer that is no outlier, with its points in `cell`; those below are counted.
-Layer take_ground(const CellReader& reader, LayerWalk& walk, FusedCell& cell) {
+void take_ground(const CellReader& reader, LayerWalk& walk, Layer& ground, FusedCell& cell) {
   const LayerWalk whole = walk;
   double least_points = -1.0;  // not known yet: most cells do without
   for (;;) {
-    const Layer layer = walk.take(cell.moments);
-    if (walk.done() || layer.scans >= kPersistent) return layer;
+    walk.take(ground, cell.moments);
+    if (walk.done() || ground.scans >= kPersistent) return;
     if (least_points < 0.0) {
       least_points = reader.params.least_share * points_of_fullest_layer(whole);
     }
-    if (layer.n >= least_points) return layer;
-    cell.below += static_cast<std::int32_t>(layer.n);
+    if (ground.n >= least_points) return;
+    cell.below += static_cast<std::int32_t>(ground.n);
   }
 }
 
@@ -173,9 +170,12 @@ bool read_cell(const CellReader& reader, TileIndex index, const Tile& tile, std:
                FusedCell& cell) {
   LayerWalk walk(reader, tile, place);
   if (walk.done() || !reader.map.window.contains(cell_of(index, place))) return false;
-  cell = FusedCell{};
+  cell.below = 0;
+  cell.overhung = false;
+  cell.overhang = 0.0;
   cell.free = tile.cells[place].free;
-  const Layer ground = take_ground(reader, walk, cell);
+  Layer ground;
+  take_ground(reader, walk, ground, cell);
   cell.h_min = ground.z_min;
   cell.h_max = ground.z_max;
   cell.last_seen = ground.last_seen;
@@ -186,9 +186,10 @@ bool read_cell(const CellReader& reader, TileIndex index, const Tile& tile, std:
   const double limit = reader.params.spread_limit;
   const double spread = limit * surface.sigma();
   cell.low = std::max(cell.h_min, surface.mean - spread);
+  Layer layer;
   Moments points;
   while (!walk.done()) {
-    const Layer layer = walk.take(points);
+    walk.take(layer, points);
     if (hangs_over(layer, ground, cell.free, reader)) {
       cell.overhung = true;
       cell.overhang = layer.z_min;

@@ -17,12 +17,11 @@ void clear(WindowCells& cells) {
   cells.clearance.clear();
 }
 
-// Sums about the origin of the window.
-MomentSums sums_of(const Moments& m, const WindowFrame& frame) {
+// Sums about the origin of the window. In their place at once, not in a copy.
+void set_sums(const Moments& m, const WindowFrame& frame, MomentSums& s) {
   const double x = m.mean_x - frame.x;
   const double y = m.mean_y - frame.y;
   const double z = m.mean_z - frame.z;
-  MomentSums s;
   s.n = m.n;
   s.x = m.n * x;
   s.y = m.n * y;
@@ -33,7 +32,6 @@ MomentSums sums_of(const Moments& m, const WindowFrame& frame) {
   s.yy = m.m_yy + s.y * y;
   s.yz = m.m_yz + s.y * z;
   s.zz = m.m_zz + s.z * z;
-  return s;
 }
 
 void append(const FusedCell& cell, const WindowFrame& frame, CellId id, ElevationGrid& grid,
@@ -43,7 +41,7 @@ void append(const FusedCell& cell, const WindowFrame& frame, CellId id, Elevatio
   grid.h_min.push_back(static_cast<float>(cell.low - frame.z));
   grid.h_max.push_back(static_cast<float>(cell.high - frame.z));
   grid.h_mean.push_back(static_cast<float>(cell.moments.mean_z - frame.z));
-  grid.sums.push_back(sums_of(cell.moments, frame));
+  set_sums(cell.moments, frame, grid.sums.emplace_back());
   cells.height.push_back(static_cast<float>(cell.height - frame.z));
   cells.variance.push_back(static_cast<float>(cell.variance));
   cells.last_seen.push_back(cell.last_seen);

@@ -50,6 +50,24 @@ void walk_plain(Lanes& lanes, Marks& marks) {
   }
 }
 
+void join_plain(Marks& marks) {
+  if (marks.size == 0) return;
+  marks.cell[marks.size] = ~marks.cell[marks.size - 1];  // ends the last run
+  std::size_t size = 0;
+  std::uint64_t word = 0;
+  // Without branches: where runs end is hard to predict.
+  for (std::size_t k = 0; k < marks.size; ++k) {
+    const CellCode cell = marks.cell[k];
+    word |= marks.word[k];
+    marks.cell[size] = cell;
+    marks.word[size] = word;
+    const bool ends = (cell ^ marks.cell[k + 1]) > 63;
+    size += ends ? 1 : 0;
+    word &= std::uint64_t{ends} - 1;
+  }
+  marks.size = size;
+}
+
 #ifdef MRPT_TERRAIN_HAS_VECTORS
 
 #define MRPT_TERRAIN_AVX512 gnu::target("avx512f,avx512dq,popcnt")
@@ -211,6 +229,38 @@ template <Ties kTies>
   store(high, lanes);
 }
 
+// Or of each lane in `same` with the one that lies so many lanes below.
+template <int kLanesBelow>
+[[MRPT_TERRAIN_AVX512, gnu::always_inline]] inline __m512i join_below(__m512i word, unsigned same) {
+  const __m512i below =
+      _mm512_maskz_alignr_epi64(static_cast<__mmask8>(same), word, word, 8 - kLanesBelow);
+  return _mm512_or_si512(word, below);
+}
+
+// Runs end with the register, too.
+[[MRPT_TERRAIN_AVX512]] void join_avx512(Marks& marks) {
+  const __m512i beyond_word = _mm512_set1_epi64(~63LL);
+  std::size_t size = 0;
+  for (std::size_t k = 0; k < marks.size; k += 8) {
+    const __m512i cell = _mm512_loadu_si512(marks.cell + k);
+    __m512i word = _mm512_loadu_si512(marks.word + k);
+    const __m512i below = _mm512_maskz_alignr_epi64(0xff, cell, cell, 7);
+    const __mmask8 equal = _mm512_testn_epi64_mask(_mm512_xor_si512(cell, below), beyond_word);
+    // Lanes that belong together with one, two and four lanes below them.
+    const unsigned one = equal & 0xfeU;
+    const unsigned two = one & one << 1;
+    const unsigned four = two & two << 2;
+    word = join_below<1>(word, one);
+    word = join_below<2>(word, two);
+    word = join_below<4>(word, four);
+    const std::size_t left = std::min<std::size_t>(marks.size - k, 8);
+    const unsigned last = 1U << (left - 1);
+    const unsigned ends = (~(one >> 1) | last) & (2 * last - 1);
+    append(cell, word, static_cast<__mmask8>(ends), marks, size);
+  }
+  marks.size = size;
+}
+
 // For each of the 16 subsets of four lanes, the halves of lanes that move the subset to the front.
 struct alignas(32) ToFront {
   std::int32_t half[16][8];
@@ -307,6 +357,19 @@ template <Ties kTies>
 #endif
 
 }  // namespace
+
+const std::array<MarkJoiner, 2>& mark_joiners() {
+  static const std::array<MarkJoiner, 2> joiners = [] {
+    std::array<MarkJoiner, 2> found{join_plain, join_plain};
+#ifdef MRPT_TERRAIN_HAS_VECTORS
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
+      found[0] = join_avx512;
+    }
+#endif
+    return found;
+  }();
+  return joiners;
+}
 
 template <Ties kTies>
 const std::array<ChunkWalker, 3>& chunk_walkers() {

@@ -43,6 +43,13 @@ struct Marks {
 /// the way or arrive in. What lanes hold that have arrived means nothing.
 using ChunkWalker = void (*)(Lanes&, Marks& marks);
 
+/// Joins marks that follow each other and are of the same word, but not always all of a run: rays
+/// of neighbouring beams enter most words together.
+using MarkJoiner = void (*)(Marks& marks);
+
+/// Versions that this processor can run, the faster first; the last runs everywhere.
+[[nodiscard]] const std::array<MarkJoiner, 2>& mark_joiners();
+
 /// Versions that this processor can run, the fastest first; the last runs everywhere.
 template <Ties kTies>
 [[nodiscard]] const std::array<ChunkWalker, 3>& chunk_walkers();

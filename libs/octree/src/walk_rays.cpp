@@ -52,29 +52,11 @@ void mark_where_they_stand(const Lanes& lanes, std::size_t count, ScanCells& cel
   }
 }
 
-// Joins marks that follow each other and are of the same word: rays of neighbouring beams enter
-// most words together. Without branches, which would be hard to predict.
-void join_neighbours(Marks& marks) {
-  if (marks.size == 0) return;
-  marks.cell[marks.size] = ~marks.cell[marks.size - 1];  // ends the last run
-  std::size_t size = 0;
-  std::uint64_t word = 0;
-  for (std::size_t k = 0; k < marks.size; ++k) {
-    const CellCode cell = marks.cell[k];
-    word |= marks.word[k];
-    marks.cell[size] = cell;
-    marks.word[size] = word;
-    const bool ends = (cell ^ marks.cell[k + 1]) > 63;
-    size += ends ? 1 : 0;
-    word &= std::uint64_t{ends} - 1;
-  }
-  marks.size = size;
-}
-
-void walk_lanes(ChunkWalker walk_chunk, Lanes& lanes, Marks& marks, ScanCells& cells) {
+void walk_lanes(ChunkWalker walk_chunk, MarkJoiner join_marks, Lanes& lanes, Marks& marks,
+                ScanCells& cells) {
   while (lanes.alive != 0) {
     walk_chunk(lanes, marks);
-    join_neighbours(marks);
+    join_marks(marks);
     for (std::size_t k = 0; k < marks.size; ++k) cells.mark_free(marks.cell[k], marks.word[k]);
   }
 }
@@ -98,6 +80,7 @@ void sort_by_cells(const RayBatch& rays, std::array<std::uint16_t, RayBatch::kCa
 void walk_rays_by(ChunkWalker walk_chunk, RayBatch& rays, ScanCells& cells) {
   std::array<std::uint16_t, RayBatch::kCapacity> order;
   sort_by_cells(rays, order);
+  const MarkJoiner join_marks = mark_joiners()[0];
   Marks marks;
   for (std::size_t begin = 0; begin < rays.size; begin += kLanes) {
     const std::size_t count = std::min(kLanes, rays.size - begin);
@@ -106,7 +89,7 @@ void walk_rays_by(ChunkWalker walk_chunk, RayBatch& rays, ScanCells& cells) {
     Lanes lanes;
     load_lanes(rays, group, count, lanes);
     mark_where_they_stand(lanes, count, cells);
-    walk_lanes(walk_chunk, lanes, marks, cells);
+    walk_lanes(walk_chunk, join_marks, lanes, marks, cells);
   }
   rays.size = 0;
 }
