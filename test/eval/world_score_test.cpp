@@ -207,8 +207,12 @@ TEST(WorldScore, WhoKnowsTheTruthIsPerfect) {
       ADD_FAILURE() << name << ": false pothole at " << wrong.x << ", " << wrong.y << ", "
                     << wrong.distance << " m away, " << wrong.at;
     }
-    if (name == "potholes") EXPECT_GT(potholes.found.total, 0U);
-    if (name == "ramps") EXPECT_GT(slopes.ramps, 0U);
+    if (name == "potholes") {
+      EXPECT_GT(potholes.found.total, 0U);
+    }
+    if (name == "ramps") {
+      EXPECT_GT(slopes.ramps, 0U);
+    }
   }
 }
 
