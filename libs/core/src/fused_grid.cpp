@@ -161,26 +161,60 @@ void count_left_out(double x, double y, double z, const Sorter& self, FusionCoun
   }
 }
 
-void sort_points(const PointsView points, const Sorter& self, FusionCounts& counts) {
+/// A point in its cell and layer.
+struct PlacedPoint {
+  MapCell cell;
+  std::int32_t layer;
+  double x, y, z;  // from the centre of the cell and the bottom of the layer, metres
+};
+
+bool place_point(double x, double y, double z, const Sorter& self, PlacedPoint& point) {
   const MapLattice lattice = self.lattice;
-  for (std::size_t i = 0; i < points.size; ++i) {
-    const double px = points.x[i], py = points.y[i], pz = points.z[i];
-    const double x = self.motion.x(px, py, pz);
-    const double y = self.motion.y(px, py, pz);
-    const double z = self.motion.z(px, py, pz);
-    MapCell cell;
-    std::int32_t layer = 0;
-    if (!(z < self.top && z >= self.bottom) || !lattice.cell_at(x, y, cell) ||
-        !self.reach.contains(cell) || !lattice.layer_at(z, layer)) {
-      count_left_out(x, y, z, self, counts);
-      continue;
+  if (!(z < self.top && z >= self.bottom) || !lattice.cell_at(x, y, point.cell) ||
+      !self.reach.contains(point.cell) || !lattice.layer_at(z, point.layer)) {
+    return false;
+  }
+  const Position2 centre = lattice.centre_of(point.cell);
+  point.x = rounded(x - centre.x);
+  point.y = rounded(y - centre.y);
+  point.z = rounded(z - lattice.bottom_of(point.layer));
+  return true;
+}
+
+void add_point(const PlacedPoint& point, const Sorter& self) {
+  ScanBin& bin = scan_bin(self, point.cell, point.layer);
+  bin.z_min = std::min(bin.z_min, static_cast<float>(point.z));
+  bin.z_max = std::max(bin.z_max, static_cast<float>(point.z));
+  bin.sums.add(point.x, point.y, point.z);
+}
+
+void prefetch(const void* place) {
+#if defined(__GNUC__)
+  __builtin_prefetch(place);
+#else
+  (void)place;
+#endif
+}
+
+// So many points at a time: the list of each one's cell is on its way while the others are placed.
+void sort_points(const PointsView points, const Sorter& self, FusionCounts& counts) {
+  constexpr std::size_t kTogether = 32;
+  std::array<PlacedPoint, kTogether> placed;
+  for (std::size_t begin = 0; begin < points.size; begin += kTogether) {
+    const std::size_t end = std::min(begin + kTogether, points.size);
+    std::size_t size = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const double px = points.x[i], py = points.y[i], pz = points.z[i];
+      const double x = self.motion.x(px, py, pz);
+      const double y = self.motion.y(px, py, pz);
+      const double z = self.motion.z(px, py, pz);
+      if (place_point(x, y, z, self, placed[size])) {
+        prefetch(&self.workspace.head[self.head_of(placed[size++].cell)]);
+      } else {
+        count_left_out(x, y, z, self, counts);
+      }
     }
-    const Position2 centre = lattice.centre_of(cell);
-    const double dz = rounded(z - lattice.bottom_of(layer));
-    ScanBin& bin = scan_bin(self, cell, layer);
-    bin.z_min = std::min(bin.z_min, static_cast<float>(dz));
-    bin.z_max = std::max(bin.z_max, static_cast<float>(dz));
-    bin.sums.add(rounded(x - centre.x), rounded(y - centre.y), dz);
+    for (std::size_t k = 0; k < size; ++k) add_point(placed[k], self);
   }
 }
 

@@ -66,6 +66,19 @@ inline void ensure_array(OcTreeNode& node) {
   if (children_of(node) == nullptr) children_of(node) = new octomap::AbstractOcTreeNode*[8]();
 }
 
+/// Fetches what is about to be looked at: nodes lie all over the memory.
+inline void prefetch(const void* place) {
+#if defined(__GNUC__)
+  __builtin_prefetch(place);
+#else
+  (void)place;
+#endif
+}
+/// The same for the children of a node that has an array of them.
+inline void prefetch_children(OcTreeNode& node) {
+  for (std::size_t k = 0; k < 8; ++k) prefetch(children_of(node)[k]);
+}
+
 /// Replaces eight children that have no children themselves by one value.
 void remove_leaves(octomap::OcTree& tree, OcTreeNode& node, float value);
 

@@ -231,6 +231,7 @@ class Passage {
   // The cells of a node one level above them: the innermost loop.
   bool update_children(OcTreeNode& node, bool is_new, const PairMarks& marks, CellCode code) {
     ensure_array(node);
+    prefetch_children(node);
     bool touched = is_new;
     bool equal = true;
     float greatest = -std::numeric_limits<float>::max();
@@ -262,8 +263,10 @@ class Passage {
   template <class Marks>
   bool update_children(OcTreeNode& node, bool is_new, const Marks& marks, CellCode code) {
     ensure_array(node);
+    prefetch_children(node);
     bool touched = is_new;
     for (std::size_t k = 0; k < 8; ++k) {
+      if (k < 7) prefetch_array_of(child_of(node, k + 1));
       if (!marks.has_part(k)) continue;
       OcTreeNode* child = child_of(node, k);
       const bool is_new_child = child == nullptr;
@@ -273,6 +276,10 @@ class Passage {
     }
     if (touched) prune_or_raise(tree_, node);
     return touched;
+  }
+
+  static void prefetch_array_of(OcTreeNode* node) {
+    if (node != nullptr) prefetch(children_of(*node));
   }
 
   // Above the tile there is one way only, and the code is the tile's.
