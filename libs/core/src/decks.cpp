@@ -46,9 +46,13 @@ void collect_members(const DeckSearch& search, std::size_t first, DeckWorkspace&
   for (std::size_t next = 0; next < workspace.members.size(); ++next) {
     const auto slot = static_cast<std::size_t>(workspace.members[next]);
     const CellIndex at = geometry.index_of(search.grid.cell[slot]);
-    for (int l = at.l - kReach; l <= at.l + kReach; ++l) {
-      for (int w = at.w - kReach; w <= at.w + kReach; ++w) {
-        const Slot other = search.grid.slot_at({l, w});
+    const int first_w = std::max(at.w - kReach, 0);
+    const int last_w = std::min(at.w + kReach, geometry.cells_w() - 1);
+    for (int l = std::max(at.l - kReach, 0); l <= std::min(at.l + kReach, geometry.cells_l() - 1);
+         ++l) {
+      const Slot* slots = search.grid.slot_of.data() + value_of(geometry.id_of({l, 0}));
+      for (int w = first_w; w <= last_w; ++w) {
+        const Slot other = slots[w];
         if (other == kUnobserved || workspace.candidate[static_cast<std::size_t>(other)] == 0)
           continue;
         const float distance =

@@ -57,10 +57,10 @@ void link_back(const Linker& linker, std::size_t slot, int reach,
   const GridGeometry& geometry = linker.grid.geometry;
   const CellIndex at = geometry.index_of(linker.grid.cell[slot]);
   for (int l = std::max(at.l - reach, 0); l <= at.l; ++l) {
+    const Slot* slots = linker.grid.slot_of.data() + value_of(geometry.id_of({l, 0}));
     const int last = l == at.l ? at.w - 1 : std::min(at.w + reach, geometry.cells_w() - 1);
     for (int w = std::max(at.w - reach, 0); w <= last; ++w) {
-      const Slot other =
-          linker.grid.slot_of[static_cast<std::size_t>(value_of(geometry.id_of({l, w})))];
+      const Slot other = slots[w];
       if (other == kUnobserved || linker.ground.is_ground(static_cast<std::size_t>(other)))
         continue;
       if (linker.compatible(slot, static_cast<std::size_t>(other)))

@@ -56,11 +56,12 @@ void sum_differences(const GroundSurfaceParams& params, int level,
       static_cast<float>(params.tolerance) + static_cast<float>(params.bend) * view.cell_size;
   const float below = -static_cast<float>(params.dip) * above;
   const auto low_weight = static_cast<float>(params.low_weight);
+  const LevelStep* step = workspace.step.data();
   for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
     const GroundCell& ground = surface.ground[slot];
     const LatticeCell cell = surface.cells.cell[slot];
-    const float reference =
-        level == 0 ? view.height[surface.cells.number_of(cell)] : view.at_cell(cell, level).height;
+    const float reference = level == 0 ? view.height[surface.cells.number_of(cell)]
+                                       : view.between(step[cell.row], step[cell.column]);
     const float difference = ground.low - reference;
     if (!(difference <= above && difference >= below)) continue;
     const bool limits = difference < 0.0F && (ground.points > 1.0F || level <= kFineLevel);
@@ -143,6 +144,10 @@ void refine_level(const GroundSurfaceParams& params, int level, GroundSurfaceWor
 
 void correct_level(const GroundSurfaceParams& params, int level, GroundSurfaceWorkspace& workspace,
                    const GroundSurface& surface) {
+  const LevelView view = view_of_level(workspace, surface.lattice(), level);
+  workspace.step.resize(static_cast<std::size_t>(surface.lattice().side));
+  for (std::int32_t index = 0; index < surface.lattice().side; ++index)
+    workspace.step[static_cast<std::size_t>(index)] = view.step_of(index, level);
   for (int pass = 0; pass < corrections(level); ++pass) {
     sum_differences(params, level, workspace, surface);
     apply_differences(static_cast<float>(params.hold), side_of(surface.lattice(), level), workspace,

@@ -31,6 +31,20 @@ struct LevelView {
     const float v = (static_cast<float>(cell.column) + 0.5F) * share - 0.5F;
     return at_node(std::min(std::max(u, 0.0F), last), std::min(std::max(v, 0.0F), last));
   }
+  /// Where the centre of the row or column `index` of the level that is `level` levels finer lies.
+  [[nodiscard]] LevelStep step_of(std::int32_t index, int level) const {
+    const float u = (static_cast<float>(index) + 0.5F) / static_cast<float>(1 << level) - 0.5F;
+    const float clamped = std::min(std::max(u, 0.0F), static_cast<float>(side - 1));
+    const std::int32_t first = std::min(static_cast<std::int32_t>(clamped), side - 2);
+    return {first, clamped - static_cast<float>(first)};
+  }
+  /// Height between four centres.
+  [[nodiscard]] float between(LevelStep row, LevelStep column) const {
+    const float* q = height + static_cast<std::ptrdiff_t>(row.first) * side + column.first;
+    const float low = q[0] + column.share * (q[1] - q[0]);
+    const float high = q[side] + column.share * (q[side + 1] - q[side]);
+    return low + row.share * (high - low);
+  }
   /// The same in units of cells from the first centre, 0 to side - 1.
   [[nodiscard]] Linear at_node(float u, float v) const {
     const int i = std::min(static_cast<int>(u), side - 2);

@@ -101,12 +101,19 @@ struct LevelSums {
   float cell_sum = 0.0F, cell_weight = 0.0F;  ///< of the cell alone
 };
 
+/// Between which two centres of a level the centre of a cell lies, and how far towards the second.
+struct LevelStep {
+  std::int32_t first = 0;
+  float share = 0.0F;
+};
+
 /// Scratch memory of `find_ground_surface`.
 struct GroundSurfaceWorkspace {
   CellPointsWorkspace sort;
   std::vector<LowSums> sums;                                 ///< per slot
   std::vector<float> part;                                   ///< per slot: share of the low band
   std::array<std::vector<float>, kSurfaceLevels> level;      ///< heights at the centres of cells
+  std::vector<LevelStep> step;                               ///< per row, or column, of the lattice
   std::vector<LevelSums> level_sums;                         ///< per cell of a level
   std::vector<std::int32_t> touched;                         ///< cells of a level
   std::vector<float> mixed;                                  ///< a row of a level
