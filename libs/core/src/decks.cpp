@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mrpt_terrain/core/moments.h"
+#include "height_plane.h"
+#include "mrpt_terrain/core/beam_slope.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -65,7 +66,7 @@ void collect_members(const DeckSearch& search, std::size_t first, DeckWorkspace&
   }
 }
 
-// RMS of the height of a cell against the mean of those before and behind it in its row or column;
+// RMS of the height of a cell against the mean of those before and behind it, in four directions;
 // negative if there are too few such triples.
 double unevenness_of(const DeckSearch& search, std::int32_t deck, const DeckWorkspace& workspace) {
   const GridGeometry& geometry = search.grid.geometry;
@@ -97,17 +98,14 @@ struct DeckSize {
 
 DeckSize size_of(const DeckSearch& search, const DeckWorkspace& workspace) {
   DeckSize size{1e9F, -1e9F, 0.0};
-  CellIndex low{1 << 30, 1 << 30}, high{-1, -1};
   for (const std::int32_t member : workspace.members) {
     const auto slot = static_cast<std::size_t>(member);
     size.lowest = std::min(size.lowest, above_ground(search.cells, slot));
     size.highest = std::max(size.highest, above_ground(search.cells, slot));
-    const CellIndex at = search.grid.geometry.index_of(search.grid.cell[slot]);
-    low = {std::min(low.l, at.l), std::min(low.w, at.w)};
-    high = {std::max(high.l, at.l), std::max(high.w, at.w)};
   }
-  size.length =
-      search.grid.geometry.cell_size() * std::hypot(high.l - low.l + 1, high.w - low.w + 1);
+  const CellBox box = cells_around(search.grid, all_of(workspace.members), 0.0);
+  size.length = search.grid.geometry.cell_size() *
+                std::hypot(box.high.l - box.low.l + 1, box.high.w - box.low.w + 1);
   return size;
 }
 
@@ -123,13 +121,11 @@ double scatter_about_plane(const DeckSearch& search, const DeckParams& params,
         search.grid.geometry.centre_of(search.grid.geometry.index_of(search.grid.cell[slot]));
     sums.add(at.x, at.y, height_of(search.cells, slot));
   }
-  const Moments m = moments_from(sums);
-  const double determinant = m.m_xx * m.m_yy - m.m_xy * m.m_xy;
-  if (determinant <= 1e-6 * m.m_xx * m.m_yy) return kNoPlane;
-  const double a = (m.m_xz * m.m_yy - m.m_yz * m.m_xy) / determinant;
-  const double b = (m.m_yz * m.m_xx - m.m_xz * m.m_xy) / determinant;
-  if (std::hypot(a, b) > std::tan(params.max_slope)) return kNoPlane;
-  return std::sqrt(std::max(0.0, m.m_zz - a * m.m_xz - b * m.m_yz) / m.n);
+  const Moments moments = moments_from(sums);
+  HeightPlane plane;
+  if (!fit_height_plane(moments, plane)) return kNoPlane;
+  if (std::hypot(plane.gradient_x, plane.gradient_y) > std::tan(params.max_slope)) return kNoPlane;
+  return std::sqrt(plane.squares / moments.n);
 }
 
 enum class DeckKind { kNone, kRamp, kLevel };

@@ -27,23 +27,6 @@ void find_cluster_slots(const FieldPoints& points, const PointSlots& point_slots
   }
 }
 
-// Corners of the cells of a cluster.
-void measure_extent(const ElevationGrid& grid, IndexRange slots, ClusterDescription& thing) {
-  CellIndex low = grid.geometry.index_of(grid.cell[static_cast<std::size_t>(*slots.begin())]);
-  CellIndex high = low;
-  for (const std::int32_t slot : slots) {
-    const CellIndex cell = grid.geometry.index_of(grid.cell[static_cast<std::size_t>(slot)]);
-    low = {std::min(low.l, cell.l), std::min(low.w, cell.w)};
-    high = {std::max(high.l, cell.l), std::max(high.w, cell.w)};
-  }
-  const double half = grid.geometry.cell_size() / 2;
-  const Position2 low_centre = grid.geometry.centre_of(low);
-  const Position2 high_centre = grid.geometry.centre_of(high);
-  thing.min_corner = {low_centre.x - half, low_centre.y - half};
-  thing.max_corner = {high_centre.x + half, high_centre.y + half};
-  thing.cells = static_cast<std::int32_t>(slots.size());
-}
-
 // Height index (3) with heights above the reference: a thing on falling ground keeps its sign.
 HeightIndex height_above_ground(const GroundSegmentation& ground, IndexRange slots, double mean,
                                 double lowest, double highest) {

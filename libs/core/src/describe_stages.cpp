@@ -16,25 +16,15 @@ void summarise(const ElevationGrid& grid, IndexRange slots, ClusterDescription& 
   const auto first = static_cast<std::size_t>(*slots.begin());
   thing.h_min = grid.h_min[first];
   thing.h_max = grid.h_max[first];
-  CellIndex low = grid.geometry.index_of(grid.cell[first]);
-  CellIndex high = low;
   for (const std::int32_t item : slots) {
     const auto slot = static_cast<std::size_t>(item);
-    const CellIndex cell = grid.geometry.index_of(grid.cell[slot]);
-    low = {std::min(low.l, cell.l), std::min(low.w, cell.w)};
-    high = {std::max(high.l, cell.l), std::max(high.w, cell.w)};
     thing.h_min = std::min(thing.h_min, grid.h_min[slot]);
     thing.h_max = std::max(thing.h_max, grid.h_max[slot]);
     sums.add(grid.sums[slot]);
   }
   moments = moments_from(sums);
-  const double half = grid.geometry.cell_size() / 2;
-  const Position2 low_centre = grid.geometry.centre_of(low);
-  const Position2 high_centre = grid.geometry.centre_of(high);
-  thing.min_corner = {low_centre.x - half, low_centre.y - half};
-  thing.max_corner = {high_centre.x + half, high_centre.y + half};
+  measure_extent(grid, slots, thing);
   thing.centroid = {moments.mean_x, moments.mean_y};
-  thing.cells = static_cast<std::int32_t>(slots.size());
   thing.points = static_cast<std::int32_t>(moments.n);
 }
 
@@ -194,6 +184,16 @@ void classify_all(const ClassParams& params, std::vector<TerrainClass>& class_of
     thing.terrain_class = classify(thing.height, thing.roughness, thing.slope, params);
     class_of.push_back(thing.terrain_class);
   }
+}
+
+void measure_extent(const ElevationGrid& grid, IndexRange slots, ClusterDescription& thing) {
+  const CellBox box = cells_around(grid, slots, 0.0);
+  const double half = grid.geometry.cell_size() / 2;
+  const Position2 low = grid.geometry.centre_of(box.low);
+  const Position2 high = grid.geometry.centre_of(box.high);
+  thing.min_corner = {low.x - half, low.y - half};
+  thing.max_corner = {high.x + half, high.y + half};
+  thing.cells = static_cast<std::int32_t>(slots.size());
 }
 
 void measure_roughness(const DescriptionParams& params, const Moments& moments,

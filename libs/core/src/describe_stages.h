@@ -35,6 +35,9 @@ void measure_slopes(const StageInput& stage, DescriptionWorkspace& workspace,
 void classify_all(const ClassParams& params, std::vector<TerrainClass>& class_of,
                   std::vector<ClusterDescription>& things);
 
+/// Number of the cells of a cluster, and the corners of the rectangle around them.
+void measure_extent(const ElevationGrid& grid, IndexRange slots, ClusterDescription& thing);
+
 /// Features of one cluster that its class is told from: roughness where it is needed.
 void measure_roughness(const DescriptionParams& params, const Moments& moments,
                        ClusterDescription& thing);

@@ -146,13 +146,12 @@ void measure_heights(GroundSurface& surface) {
   const LevelView view{surface.node.data(), cells.lattice.side, cells.lattice.cell_size};
   const float per_metre = 1.0F / cells.lattice.cell_size;
   const float half = 0.5F * static_cast<float>(cells.lattice.side) - 0.5F;
-  const auto last = static_cast<float>(cells.lattice.side - 1);
   surface.height.resize(cells.points.size());
   for (std::size_t i = 0; i < surface.height.size(); ++i) {
     const CellPoint& point = cells.points[i];
-    const float u = std::min(std::max(point.x * per_metre + half, 0.0F), last);
-    const float v = std::min(std::max(point.y * per_metre + half, 0.0F), last);
-    surface.height[i] = point.z - view.at_node(u, v).height;
+    const LevelStep row = view.step_at(point.x * per_metre + half);
+    const LevelStep column = view.step_at(point.y * per_metre + half);
+    surface.height[i] = point.z - view.between(row, column).height;
   }
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "height_plane.h"
+#include "mrpt_terrain/core/beam_slope.h"
 #include "surface_levels.h"
 
 namespace mrpt_terrain {
@@ -165,28 +167,12 @@ void collect_members(const ElevationGrid& grid, std::size_t first, HoleWorkspace
   }
 }
 
-// Rectangle around the members, in cells of the grid.
-struct CellRectangle {
-  CellIndex low{1 << 30, 1 << 30}, high{-1, -1};
-};
-
-CellRectangle rectangle_of(const ElevationGrid& grid, const std::vector<std::int32_t>& members) {
-  CellRectangle result;
-  for (const std::int32_t slot : members) {
-    const CellIndex at = grid.geometry.index_of(grid.cell[static_cast<std::size_t>(slot)]);
-    result.low = {std::min(result.low.l, at.l), std::min(result.low.w, at.w)};
-    result.high = {std::max(result.high.l, at.l), std::max(result.high.w, at.w)};
-  }
-  return result;
-}
-
 // Brings the points on and below the ground in and around the members together; those in the
 // members' own cells are marked.
-void collect_points(const FieldWorkspace& field, const ElevationGrid& grid,
+void collect_points(const FieldWorkspace& field, const ElevationGrid& grid, const CellBox& box,
                     HoleWorkspace& workspace) {
   const GroundSurface& surface = field.surface;
   const SquareLattice& lattice = surface.lattice();
-  const CellRectangle box = rectangle_of(grid, workspace.members);
   const double reach = kRimReach * grid.geometry.cell_size() + grid.geometry.cell_size() / 2;
   const Position2 low = grid.geometry.centre_of(box.low), high = grid.geometry.centre_of(box.high);
   const auto index = [&lattice](double metres) {
@@ -231,15 +217,14 @@ RimPlane fit_rim(const std::vector<HolePoint>& points, const RimPlane* before, d
     sums.add(p.x, p.y, p.z);
   }
   const Moments m = moments_from(sums);
-  RimPlane plane{m.mean_x, m.mean_y, m.mean_z};
-  plane.points = static_cast<int>(m.n);
-  const double determinant = m.m_xx * m.m_yy - m.m_xy * m.m_xy;
-  if (m.n < 6 || determinant <= 1e-6 * m.m_xx * m.m_yy) return plane;
-  plane.a = (m.m_xz * m.m_yy - m.m_yz * m.m_xy) / determinant;
-  plane.b = (m.m_yz * m.m_xx - m.m_xz * m.m_xy) / determinant;
-  plane.sigma =
-      std::sqrt(std::max(0.0, m.m_zz - plane.a * m.m_xz - plane.b * m.m_yz) / (m.n - 3.0));
-  return plane;
+  RimPlane rim{m.mean_x, m.mean_y, m.mean_z};
+  rim.points = static_cast<int>(m.n);
+  HeightPlane plane;
+  if (m.n < 6 || !fit_height_plane(m, plane)) return rim;
+  rim.a = plane.gradient_x;
+  rim.b = plane.gradient_y;
+  rim.sigma = std::sqrt(plane.squares / (m.n - 3.0));
+  return rim;
 }
 
 // Depth that a fifth of the points in the hole exceed.
@@ -285,19 +270,16 @@ bool has_walls(const HoleParams& params, const RimPlane& rim, double depth,
   return deep >= params.least_points && between <= params.wall_share * deep;
 }
 
-double width_of(const ElevationGrid& grid, const HoleWorkspace& workspace) {
-  const CellRectangle box = rectangle_of(grid, workspace.members);
-  return grid.geometry.cell_size() * (1 + std::min(box.high.l - box.low.l, box.high.w - box.low.w));
-}
-
 bool is_hole(const FieldWorkspace& field, const ElevationGrid& grid, const HoleParams& params,
              HoleWorkspace& workspace) {
   constexpr int kFewestRimPoints = 8;
   constexpr double kRimBand = 0.3;  // share of the depth that the rim may lie low
-  if (width_of(grid, workspace) > params.widest) return false;
+  const CellBox box = cells_around(grid, all_of(workspace.members), 0.0);
+  const int across = 1 + std::min(box.high.l - box.low.l, box.high.w - box.low.w);
+  if (grid.geometry.cell_size() * across > params.widest) return false;
   for (const std::int32_t slot : workspace.members)
     workspace.in_hole[static_cast<std::size_t>(slot)] = 1;
-  collect_points(field, grid, workspace);
+  collect_points(field, grid, box, workspace);
   for (const std::int32_t slot : workspace.members)
     workspace.in_hole[static_cast<std::size_t>(slot)] = 0;
   const RimPlane all = fit_rim(workspace.points, nullptr, 0.0);

@@ -61,7 +61,7 @@ void sum_differences(const GroundSurfaceParams& params, int level,
     const GroundCell& ground = surface.ground[slot];
     const LatticeCell cell = surface.cells.cell[slot];
     const float reference = level == 0 ? view.height[surface.cells.number_of(cell)]
-                                       : view.between(step[cell.row], step[cell.column]);
+                                       : view.between(step[cell.row], step[cell.column]).height;
     const float difference = ground.low - reference;
     if (!(difference <= above && difference >= below)) continue;
     const bool limits = difference < 0.0F && (ground.points > 1.0F || level <= kFineLevel);

@@ -18,45 +18,31 @@ struct LevelView {
     float height, gradient_x, gradient_y;
   };
   [[nodiscard]] Linear at(float x, float y) const {
-    const auto last = static_cast<float>(side - 1);
     const float half = 0.5F * static_cast<float>(side) - 0.5F;
-    return at_node(std::min(std::max(x / cell_size + half, 0.0F), last),
-                   std::min(std::max(y / cell_size + half, 0.0F), last));
+    return between(step_at(x / cell_size + half), step_at(y / cell_size + half));
   }
   /// The same at the centre of a cell of the level that is `level` levels finer.
   [[nodiscard]] Linear at_cell(LatticeCell cell, int level) const {
-    const auto last = static_cast<float>(side - 1);
-    const float share = 1.0F / static_cast<float>(1 << level);
-    const float u = (static_cast<float>(cell.row) + 0.5F) * share - 0.5F;
-    const float v = (static_cast<float>(cell.column) + 0.5F) * share - 0.5F;
-    return at_node(std::min(std::max(u, 0.0F), last), std::min(std::max(v, 0.0F), last));
+    return between(step_of(cell.row, level), step_of(cell.column, level));
+  }
+  /// Where a row or column lies, in units of cells from the first centre.
+  [[nodiscard]] LevelStep step_at(float u) const {
+    const float inside = std::min(std::max(u, 0.0F), static_cast<float>(side - 1));
+    const std::int32_t first = std::min(static_cast<std::int32_t>(inside), side - 2);
+    return {first, inside - static_cast<float>(first)};
   }
   /// Where the centre of the row or column `index` of the level that is `level` levels finer lies.
   [[nodiscard]] LevelStep step_of(std::int32_t index, int level) const {
-    const float u = (static_cast<float>(index) + 0.5F) / static_cast<float>(1 << level) - 0.5F;
-    const float clamped = std::min(std::max(u, 0.0F), static_cast<float>(side - 1));
-    const std::int32_t first = std::min(static_cast<std::int32_t>(clamped), side - 2);
-    return {first, clamped - static_cast<float>(first)};
+    return step_at((static_cast<float>(index) + 0.5F) / static_cast<float>(1 << level) - 0.5F);
   }
-  /// Height between four centres.
-  [[nodiscard]] float between(LevelStep row, LevelStep column) const {
+  /// Height and gradient between four centres.
+  [[nodiscard]] Linear between(LevelStep row, LevelStep column) const {
     const float* q = height + static_cast<std::ptrdiff_t>(row.first) * side + column.first;
     const float low = q[0] + column.share * (q[1] - q[0]);
     const float high = q[side] + column.share * (q[side + 1] - q[side]);
-    return low + row.share * (high - low);
-  }
-  /// The same in units of cells from the first centre, 0 to side - 1.
-  [[nodiscard]] Linear at_node(float u, float v) const {
-    const int i = std::min(static_cast<int>(u), side - 2);
-    const int j = std::min(static_cast<int>(v), side - 2);
-    const float a = u - static_cast<float>(i);
-    const float b = v - static_cast<float>(j);
-    const float* q = height + static_cast<std::ptrdiff_t>(i) * side + j;
-    const float low = q[0] + b * (q[1] - q[0]);
-    const float high = q[side] + b * (q[side + 1] - q[side]);
-    const float left = q[0] + a * (q[side] - q[0]);
-    const float right = q[1] + a * (q[side + 1] - q[1]);
-    return {low + a * (high - low), (high - low) / cell_size, (right - left) / cell_size};
+    const float left = q[0] + row.share * (q[side] - q[0]);
+    const float right = q[1] + row.share * (q[side + 1] - q[1]);
+    return {low + row.share * (high - low), (high - low) / cell_size, (right - left) / cell_size};
   }
 };
 

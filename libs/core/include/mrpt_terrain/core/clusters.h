@@ -31,6 +31,11 @@ struct IndexRange {
   [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(last - first); }
 };
 
+/// All of a list of indices.
+[[nodiscard]] inline IndexRange all_of(const std::vector<std::int32_t>& items) {
+  return {items.data(), items.data() + items.size()};
+}
+
 /// Rows of indices, one after the other in one array: row k is `[first[k], first[k + 1])`.
 struct IndexRows {
   std::vector<std::int32_t> first{0};

@@ -110,14 +110,14 @@ struct LevelStep {
 /// Scratch memory of `find_ground_surface`.
 struct GroundSurfaceWorkspace {
   CellPointsWorkspace sort;
-  std::vector<LowSums> sums;                                 ///< per slot
-  std::vector<float> part;                                   ///< per slot: share of the low band
-  std::array<std::vector<float>, kSurfaceLevels> level;      ///< heights at the centres of cells
-  std::vector<LevelStep> step;                               ///< per row, or column, of the lattice
-  std::vector<LevelSums> level_sums;                         ///< per cell of a level
-  std::vector<std::int32_t> touched;                         ///< cells of a level
-  std::vector<float> mixed;                                  ///< a row of a level
-  std::vector<float> share, count;                           ///< per cell of level 4
+  std::vector<LowSums> sums;                             ///< per slot
+  std::vector<float> part;                               ///< per slot: share of the low band
+  std::array<std::vector<float>, kSurfaceLevels> level;  ///< heights at the centres of cells
+  std::vector<LevelStep> step;                           ///< per row, or column, of the lattice
+  std::vector<LevelSums> level_sums;                     ///< per cell of a level
+  std::vector<std::int32_t> touched;                     ///< cells of a level
+  std::vector<float> mixed;         ///< for a moment: a row, shares or tolerances
+  std::vector<float> share, count;  ///< per cell of level 4
   std::vector<float> candidate_x, candidate_y, candidate_z;  ///< for the plane
 };
 

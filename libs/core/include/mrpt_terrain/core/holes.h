@@ -68,9 +68,9 @@ struct HoleWorkspace {
 
 /// Looks for holes. The height of the rim is the mean of the ground within about 1.2 m, which the
 /// ground reference, that goes down into holes, is compared with; ground that lies low does not
-/// count in it. Cells that lie below the rim and touch are a hole if they are deep, and most of
-/// what is seen around them lies on the height of the rim: a dip in rolling ground has no rim, the
-/// foot of a step has it on one side only.
+/// count in it. Cells that lie below the rim, up to two cells apart, are a hole if they are deep,
+/// their walls are steep, and an even rim is seen on at least three sides: wide dips of rolling
+/// ground have no even rim, the foot of a low step has one on one side only.
 /// \param[in,out] cells `rim` is filled in
 /// \param[in,out] ground cells of holes become `GroundRule::kLow`
 void find_holes(const FieldWorkspace& field, const ElevationGrid& grid, const HoleParams& params,
