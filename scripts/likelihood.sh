@@ -13,7 +13,8 @@ of each family in params/families, a robot maps the first 4 m of its path, and a
 is compared with the map at poses up to
 0.5 m and 10 degrees from the true one. Prints where the likelihood was greatest, and how often that
 was within 0.1 m and 1 degree of the truth. Fails if that is less than 95 % of the worlds whose
-surfaces fix a pose; libs/map/README.md says which those are.
+surfaces fix a pose in maps of several scans, or less than 85 % in maps of one; libs/map/README.md
+says which worlds those are.
 TEXT
 }
 
