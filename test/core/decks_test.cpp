@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -18,52 +20,88 @@ namespace {
 using Surface = std::function<double(double x, double y)>;
 
 constexpr double kNoSurface = -1.0;
+constexpr double kSensorX = -5.0, kSensorZ = 1.0;
 
-/// Observed cells of 0.2 m, all of them, each with one layer of points: the surface, which is as
-/// thick as it rises within the cell, or the ground.
+/// Points every 5 cm, seen from (-5, 0, 1): the ground, or the surface where it is higher than
+/// `ground_below`, shifted along their beams by normal noise.
 struct World {
+  Points points;
+  FieldPoints field;
+  PointSlots slots;
   ElevationGrid grid;
   GroundSegmentation ground;
   FieldCells cells;
   DeckWorkspace workspace;
+  std::array<float, 3> sensor{static_cast<float>(kSensorX), 0.0F, static_cast<float>(kSensorZ)};
 
   explicit World(const Surface& surface, double noise = 0.0) {
+    RandomGenerator random(7);
+    for (int i = -120; i < 120; ++i) {
+      for (int j = -120; j < 120; ++j) {
+        const double x = 0.05 * i + 0.025, y = 0.05 * j + 0.025;
+        add(x, y, std::max(surface(x, y), 0.0), noise * normal(random));
+      }
+    }
+    measure();
+  }
+
+  /// An upright face of points every 2 cm, x = at, |y| < 2, from the ground to `height`.
+  void add_side(double at, double height) {
+    for (int i = -100; i < 100; ++i)
+      for (double z = 0.01; z < height; z += 0.02) add(at, 0.02 * i, z, 0.0);
+    measure();
+  }
+
+  static double normal(RandomGenerator& random) {
+    double sum = -6.0;
+    for (int k = 0; k < 12; ++k) sum += random.uniform();
+    return sum;
+  }
+
+  void add(double x, double y, double z, double noise) {
+    const double dx = x - kSensorX, dz = z - kSensorZ;
+    const double shift = noise / std::sqrt(dx * dx + y * y + dz * dz);
+    points.push_back(static_cast<float>(x + dx * shift), static_cast<float>(y + y * shift),
+                     static_cast<float>(z + dz * shift));
+  }
+
+  void measure() {
+    constexpr float kGroundBelow = 0.1F;
     GridParams params;
     params.length = params.width = 12.0;
     params.cell_size = 0.2;
-    Points points;
-    const GridGeometry geometry(12.0, 12.0, 0.2);
-    for (int l = 0; l < geometry.cells_l(); ++l) {
-      for (int w = 0; w < geometry.cells_w(); ++w) {
-        const Position2 at = geometry.centre_of({l, w});
-        points.push_back(static_cast<float>(at.x), static_cast<float>(at.y), 0.0F);
-      }
-    }
     ElevationGridWorkspace scratch;
-    PointSlots slots;
     build_elevation_grid(points.view(), params, scratch, grid, slots);
     const std::size_t n = grid.observed();
     ground.rule.assign(n, GroundRule::kGround);
     cells.ground.assign(n, 0.0F);
-    cells.low.assign(n, 0.0F);
+    cells.low.assign(n, 1e9F);
     cells.high.assign(n, 0.0F);
-    RandomGenerator random(7);
-    for (std::size_t slot = 0; slot < n; ++slot) {
-      const Position2 at = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[slot]));
-      const double height = surface(at.x, at.y);
-      if (height < 0.12) continue;  // ground by its height
-      const double shift = noise * (2.0 * random.uniform() - 1.0);
+    field.height.assign(points.view().z, points.view().z + points.size());
+    field.support.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const bool above = field.height[i] > kGroundBelow;
+      field.support[i] = above ? Support::kAbove : Support::kGround;
+      if (!above || slots[i] < 0) continue;
+      const auto slot = static_cast<std::size_t>(slots[i]);
       ground.rule[slot] = GroundRule::kHigh;
-      cells.low[slot] = static_cast<float>(height + shift - 0.02);
-      cells.high[slot] = static_cast<float>(height + shift + 0.02);
+      cells.low[slot] = std::min(cells.low[slot], field.height[i]);
+      cells.high[slot] = std::max(cells.high[slot], field.height[i]);
     }
   }
 
   std::size_t find(const DeckParams& params = {}) {
-    find_decks(grid, ground, params, workspace, cells);
+    find_decks({points.view(), BeamOrigins{&sensor, nullptr}}, field, slots, grid, ground, params,
+               workspace, cells);
     std::set<std::int32_t> numbers(cells.deck.begin(), cells.deck.end());
     numbers.erase(-1);
     return numbers.size();
+  }
+
+  std::vector<Support> labels(const DeckParams& params = {}) {
+    std::vector<Support> support = field.support;
+    label_deck_points(points.view(), field, slots, grid, cells, params, workspace, support);
+    return support;
   }
 };
 
@@ -89,10 +127,33 @@ TEST(Decks, ARampIsOneDeckOfAllItsCells) {
   }
 }
 
+TEST(Decks, PlanesOfARampAreItsSurface) {
+  World world(ramp(3.0, 2.0, 0.3));
+  ASSERT_EQ(world.find(), 1U);
+  int seen = 0;
+  for (std::size_t slot = 0; slot < world.grid.observed(); ++slot) {
+    if (world.cells.deck[slot] < 0) continue;
+    const DeckPlane& plane = world.cells.deck_plane[slot];
+    // At the edge the sloping surface and its upright end are in one cell.
+    if (plane.x > 1.3F) continue;
+    EXPECT_NEAR(plane.at(plane.x + 0.1F, plane.y), (plane.x + 1.6F) * std::tan(0.3), 0.006);
+    ++seen;
+  }
+  EXPECT_GT(seen, 50);
+}
+
+TEST(Decks, ARidgeWithAPlatformIsOneDeck) {
+  World world([](double x, double y) {
+    if (!inside(x, y, 4.0, 2.0)) return kNoSurface;
+    return std::min(0.4, (2.0 - std::abs(x)) * std::tan(0.3));
+  });
+  EXPECT_EQ(world.find(), 1U);
+}
+
 TEST(Decks, SlopesUpToTheLimitAreDecks) {
   DeckParams params;
   params.max_slope = 0.4;
-  World below(ramp(3.0, 2.0, 0.38)), above(ramp(3.0, 2.0, 0.55));
+  World below(ramp(3.0, 2.0, 0.38)), above(ramp(3.0, 2.0, 0.7));
   EXPECT_EQ(below.find(params), 1U);
   EXPECT_EQ(above.find(params), 0U);
 }
@@ -117,33 +178,69 @@ TEST(Decks, LargeIsATerrace) {
   EXPECT_EQ(table.find(), 0U);
 }
 
-TEST(Decks, WhatIsUnevenIsNone) {
-  World smooth(level(4.0, 1.0, 0.17), 0.005), rough(level(4.0, 1.0, 0.17), 0.04);
-  EXPECT_EQ(smooth.find(), 1U);
-  EXPECT_EQ(rough.find(), 0U);
+TEST(Decks, RangeNoiseIsNoUnevennessWhereBeamsGraze) {
+  World ordinary(level(4.0, 1.0, 0.17), 0.02), grass(level(4.0, 1.0, 0.17), 0.1);
+  EXPECT_EQ(ordinary.find(), 1U);
+  EXPECT_EQ(grass.find(), 0U);
 }
 
-TEST(Decks, ThickCellsAreNone) {
-  World world(level(4.0, 1.0, 0.17));
-  for (float& high : world.cells.high) high += high > 0.0F ? 0.2F : 0.0F;
+TEST(Decks, RubbleIsNone) {
+  World world([](double x, double y) {
+    const double bump = 0.03 * std::sin(31.0 * x) * std::sin(29.0 * y);
+    return inside(x, y, 4.0, 1.0) ? 0.17 + bump : kNoSurface;
+  });
   EXPECT_EQ(world.find(), 0U);
 }
 
-TEST(Decks, SidesOfACurbAreBelowItsTop) {
-  World world(level(4.0, 0.6, 0.15));
-  ASSERT_EQ(world.find(), 1U);
-  const DeckParams params;
-  for (std::size_t slot = 0; slot < world.grid.observed(); ++slot) {
-    if (world.cells.deck[slot] < 0) continue;
-    EXPECT_FLOAT_EQ(world.cells.deck_low[slot], 0.17F - static_cast<float>(params.side));
+TEST(Decks, TallCellsAreNone) {
+  World world(level(4.0, 1.0, 0.17));
+  for (std::size_t i = 0; i < world.points.size(); i += 3) {
+    if (world.field.support[i] == Support::kAbove)
+      world.add(world.points.view().x[i], world.points.view().y[i], 0.5, 0.0);
   }
+  world.measure();
+  EXPECT_EQ(world.find(), 0U);
+}
+
+TEST(Decks, TheSideOfACurbIsAboveAndItsTopIsGround) {
+  World world(level(1.0, 6.0, 0.2), 0.005);
+  const std::size_t tops = world.points.size();
+  world.add_side(-0.5, 0.2);
+  ASSERT_EQ(world.find(), 1U);
+  const std::vector<Support> support = world.labels();
+  int sides = 0, above = 0, top = 0, ground = 0;
+  for (std::size_t i = 0; i < support.size(); ++i) {
+    const PointsView view = world.points.view();
+    if (i >= tops && view.z[i] > 0.1F) {
+      ++sides;
+      above += support[i] == Support::kAbove ? 1 : 0;
+    }
+    // Beyond 4 cm from the side, which no scan tells from it.
+    if (i < tops && view.z[i] > 0.1F && view.x[i] > -0.46F) {
+      ++top;
+      ground += support[i] == Support::kGround ? 1 : 0;
+    }
+  }
+  EXPECT_GT(above, 0.97 * sides);
+  EXPECT_GT(ground, 0.99 * top);
+  EXPECT_GT(sides, 500);
+  EXPECT_GT(top, 1000);
+}
+
+TEST(Decks, WhatStandsOnADeckIsNoGround) {
+  World world(level(4.0, 4.0, 0.4));
+  const std::size_t tops = world.points.size();
+  for (double z = 0.45; z < 0.5; z += 0.01) world.add(0.31, 0.31, z, 0.0);
+  world.measure();
+  ASSERT_EQ(world.find(), 1U);
+  const std::vector<Support> support = world.labels();
+  for (std::size_t i = tops; i < support.size(); ++i) EXPECT_EQ(support[i], Support::kAbove);
 }
 
 TEST(Decks, NothingObservedIsNothing) {
   World world(level(4.0, 0.6, 0.15));
-  world.grid = ElevationGrid{};
-  world.ground = GroundSegmentation{};
-  world.cells = FieldCells{};
+  world.points.clear();
+  world.measure();
   EXPECT_EQ(world.find(), 0U);
 }
 

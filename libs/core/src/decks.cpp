@@ -2,6 +2,7 @@
 #include "mrpt_terrain/core/decks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "height_plane.h"
@@ -14,188 +15,387 @@ namespace {
 constexpr int kReach = 3;
 // Height that two cells of a deck may differ by besides its slope, metres.
 constexpr float kSlack = 0.04F;
+// Points up to this far below the highest of a cell are its top, metres.
+constexpr float kTopLayer = 0.04F;
 // A deck of fewer cells shows no surface.
 constexpr std::size_t kFewestCells = 4;
-// Fewest triples of cells in a row that tell how even a deck is.
-constexpr int kFewestTriples = 3;
+// The surface at a cell is the plane through the layers of the cells of the deck around it: up to
+// this many cells away, or this many where there are fewer than kFewestLayers.
+constexpr int kNearReach = 1;
+constexpr int kFarReach = 2;
+constexpr float kFewestLayers = 4.0F;
+// Holds the gradient of a plane to zero where layers lie in line, m^2.
+constexpr float kHold = 0.002F;
+// Points of the side of a slope are this many times as far below its surface: where it bends, its
+// own points are below the plane.
+constexpr float kSlopeSide = 4.0F;
+// Points higher above the ground may be of a deck's side, metres.
+constexpr float kLeastSide = 0.03F;
+// Fewest cells with a plane that tell how even a deck is.
+constexpr std::size_t kFewestPlanes = 3;
+// A ramp rises by more than this over the ground, m/m.
+constexpr float kLeastSlope = 0.04F;
+// Fewest points of a surface around a cell.
+constexpr float kFewestPoints = 8.0F;
+// Sine of the angle at which beams meet a plane along which they run, over that of a level one,
+// which counts up to kSteep.
+constexpr float kGrazing = 0.3F;
+constexpr float kSteep = 0.3F;
+// Scatter where that is so: more than any surface's.
+constexpr float kLoose = 9.0F;
+// Where the beams start if that is not known: the sensor of a small robot.
+constexpr std::array<float, 3> kUnknownOrigin{0.0F, 0.0F, 1.0F};
 
-float height_of(const FieldCells& cells, std::size_t slot) {
-  return cells.ground[slot] + 0.5F * (cells.low[slot] + cells.high[slot]);
-}
-
-float above_ground(const FieldCells& cells, std::size_t slot) {
-  return 0.5F * (cells.low[slot] + cells.high[slot]);
-}
+// Medians over the cells of a deck, or of one cell.
+struct SurfaceFit {
+  float bend;   // RMS of the layers around about their plane, metres
+  float slope;  // gradient of their heights above the ground
+};
 
 /// The search for one deck.
 struct DeckSearch {
   const ElevationGrid& grid;
   const FieldCells& cells;
+  const DeckParams& params;
+  DeckWorkspace& workspace;
   float rise;  ///< greatest difference in height per metre
 
-  [[nodiscard]] bool connected(std::size_t a, std::size_t b, float distance) const {
-    const float step = std::abs(height_of(cells, a) - height_of(cells, b));
-    return step <= kSlack + rise * distance;
+  [[nodiscard]] const DeckLayer& top(std::size_t slot) const { return workspace.top[slot]; }
+  [[nodiscard]] bool connected(std::size_t a, std::size_t b) const {
+    const float distance = std::hypot(top(a).x - top(b).x, top(a).y - top(b).y);
+    return std::abs(top(a).above - top(b).above) <= kSlack + rise * distance;
+  }
+  /// Calls `visit` with every observed cell up to `reach` cells away along each axis, and itself.
+  template <class Visitor>
+  void visit_around(std::size_t slot, int reach, Visitor&& visit) const {
+    const GridGeometry& geometry = grid.geometry;
+    const CellIndex at = geometry.index_of(grid.cell[slot]);
+    const int first_w = std::max(at.w - reach, 0);
+    const int last_w = std::min(at.w + reach, geometry.cells_w() - 1);
+    const int last_l = std::min(at.l + reach, geometry.cells_l() - 1);
+    for (int l = std::max(at.l - reach, 0); l <= last_l; ++l) {
+      const Slot* slots = grid.slot_of.data() + value_of(geometry.id_of({l, 0}));
+      for (int w = first_w; w <= last_w; ++w) {
+        if (slots[w] != kUnobserved) visit(static_cast<std::size_t>(slots[w]));
+      }
+    }
   }
 };
 
-void collect_members(const DeckSearch& search, std::size_t first, DeckWorkspace& workspace) {
-  const GridGeometry& geometry = search.grid.geometry;
-  const auto cell_size = static_cast<float>(geometry.cell_size());
+void choose_candidates(const GroundSegmentation& ground, const DeckParams& params,
+                       const FieldCells& cells, DeckWorkspace& workspace) {
+  for (std::size_t slot = 0; slot < cells.size(); ++slot) {
+    const bool thin = cells.high[slot] - cells.low[slot] <= static_cast<float>(params.thickness) ||
+                      cells.high[slot] <= static_cast<float>(params.curb_height);
+    workspace.candidate[slot] = ground.rule[slot] == GroundRule::kHigh && thin ? 1 : 0;
+  }
+}
+
+// Mean place and height of the points of every candidate, and of its highest.
+void measure_layers(const PointsView& scan, const FieldPoints& points,
+                    const PointSlots& point_slots, const FieldCells& cells,
+                    DeckWorkspace& workspace) {
+  for (auto* layers : {&workspace.all, &workspace.top}) layers->assign(cells.size(), DeckLayer{});
+  for (std::size_t i = 0; i < point_slots.size(); ++i) {
+    if (point_slots[i] < 0 || points.support[i] != Support::kAbove) continue;
+    const auto slot = static_cast<std::size_t>(point_slots[i]);
+    if (workspace.candidate[slot] == 0) continue;
+    const float height = points.height[i];
+    workspace.all[slot].add(scan.x[i], scan.y[i], scan.z[i], height);
+    if (height >= cells.high[slot] - kTopLayer)
+      workspace.top[slot].add(scan.x[i], scan.y[i], scan.z[i], height);
+  }
+  for (auto* layers : {&workspace.all, &workspace.top})
+    for (DeckLayer& layer : *layers) layer.finish();
+}
+
+void collect_members(const DeckSearch& search, std::size_t first) {
+  DeckWorkspace& workspace = search.workspace;
   workspace.members.assign(1, static_cast<std::int32_t>(first));
   workspace.candidate[first] = 0;
   for (std::size_t next = 0; next < workspace.members.size(); ++next) {
     const auto slot = static_cast<std::size_t>(workspace.members[next]);
-    const CellIndex at = geometry.index_of(search.grid.cell[slot]);
-    const int first_w = std::max(at.w - kReach, 0);
-    const int last_w = std::min(at.w + kReach, geometry.cells_w() - 1);
-    for (int l = std::max(at.l - kReach, 0); l <= std::min(at.l + kReach, geometry.cells_l() - 1);
-         ++l) {
-      const Slot* slots = search.grid.slot_of.data() + value_of(geometry.id_of({l, 0}));
-      for (int w = first_w; w <= last_w; ++w) {
-        const Slot other = slots[w];
-        if (other == kUnobserved || workspace.candidate[static_cast<std::size_t>(other)] == 0)
-          continue;
-        const float distance =
-            cell_size * std::hypot(static_cast<float>(l - at.l), static_cast<float>(w - at.w));
-        if (!search.connected(slot, static_cast<std::size_t>(other), distance)) continue;
-        workspace.candidate[static_cast<std::size_t>(other)] = 0;
-        workspace.members.push_back(other);
+    search.visit_around(slot, kReach, [&](std::size_t other) {
+      if (workspace.candidate[other] == 0 || !search.connected(slot, other)) return;
+      workspace.candidate[other] = 0;
+      workspace.members.push_back(static_cast<std::int32_t>(other));
+    });
+  }
+}
+
+// The surface of a deck at one of its cells: a plane through the layers of the cells up to `reach`
+// cells away, those of sides left out by a second look.
+// \return whether enough layers lie around
+bool fit_surface(const DeckSearch& search, const std::vector<DeckLayer>& layers, std::size_t slot,
+                 std::int32_t deck, int reach, DeckPlane& plane, SurfaceFit& fit) {
+  const DeckLayer& at = layers[slot];
+  const auto side = static_cast<float>(search.params.side);
+  plane = {at.x, at.y, at.z, 0.0F, 0.0F, 0.0F};
+  bool found = false;
+  for (int pass = 0; pass < 2; ++pass) {
+    HeightSums heights, above;
+    search.visit_around(slot, reach, [&](std::size_t other) {
+      if (search.workspace.number[other] != deck) return;
+      const DeckLayer& layer = layers[other];
+      if (pass > 0 && layer.z < plane.at(layer.x, layer.y) - side) return;
+      heights.add(layer.x - at.x, layer.y - at.y, layer.z - at.z);
+      above.add(layer.x - at.x, layer.y - at.y, layer.above - at.above);
+    });
+    if (heights.n < kFewestLayers) break;
+    const SumsPlane through = fit_plane(heights, kHold);
+    const SumsPlane over_ground = fit_plane(above, kHold);
+    plane = {at.x, at.y, at.z + through.at_centre(), through.gradient_x, through.gradient_y, 0.0F};
+    fit = {std::sqrt(through.variance), std::hypot(over_ground.gradient_x, over_ground.gradient_y)};
+    found = true;
+  }
+  return found;
+}
+
+float median_of(std::vector<float>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Fits the planes at the cells of a deck.
+// \param[out] fit medians over them
+// \return whether there are enough
+bool fit_surfaces(const DeckSearch& search, const std::vector<DeckLayer>& layers, std::int32_t deck,
+                  SurfaceFit& fit) {
+  DeckWorkspace& workspace = search.workspace;
+  workspace.bends.clear();
+  workspace.slopes.clear();
+  workspace.planes.clear();
+  for (const std::int32_t member : workspace.members) {
+    const auto slot = static_cast<std::size_t>(member);
+    DeckPlane plane;
+    SurfaceFit here{};
+    if (fit_surface(search, layers, slot, deck, kNearReach, plane, here) ||
+        fit_surface(search, layers, slot, deck, kFarReach, plane, here)) {
+      workspace.bends.push_back(here.bend);
+      workspace.slopes.push_back(here.slope);
+    }
+    workspace.planes.push_back(plane);
+  }
+  if (workspace.bends.size() < kFewestPlanes) return false;
+  fit = {median_of(workspace.bends), median_of(workspace.slopes)};
+  return true;
+}
+
+enum class DeckKind { kNone, kLevel, kRamp, kTerrace };
+
+// Whether a wheel gets onto a deck, by its size.
+DeckKind kind_of(const DeckSearch& search) {
+  const DeckParams& params = search.params;
+  const std::vector<std::int32_t>& members = search.workspace.members;
+  if (members.size() < kFewestCells) return DeckKind::kNone;
+  float lowest = 1e9F, highest = -1e9F;
+  for (const std::int32_t member : members) {
+    lowest = std::min(lowest, search.top(static_cast<std::size_t>(member)).above);
+    highest = std::max(highest, search.top(static_cast<std::size_t>(member)).above);
+  }
+  const double cell = search.grid.geometry.cell_size();
+  const CellBox box = cells_around(search.grid, all_of(members), 0.0);
+  const double length = cell * std::hypot(box.high.l - box.low.l + 1, box.high.w - box.low.w + 1);
+  const double area = static_cast<double>(members.size()) * cell * cell;
+  const bool ramp = lowest <= params.foot && highest - lowest >= params.least_rise;
+  const bool curb = highest <= params.curb_height && length >= params.curb_length;
+  const bool terrace = lowest <= params.terrace_height && area >= params.terrace_area;
+  return curb      ? DeckKind::kLevel
+         : terrace ? DeckKind::kTerrace
+         : ramp    ? DeckKind::kRamp
+                   : DeckKind::kNone;
+}
+
+// Whether the cells of a deck are even, and their planes. A slope is told by the means of its
+// cells, a narrow level by their tops, as its sides are in the same cells.
+bool is_even(const DeckSearch& search, DeckKind kind, std::int32_t number) {
+  const DeckWorkspace& workspace = search.workspace;
+  const bool level = kind == DeckKind::kLevel;
+  SurfaceFit fit{};
+  for (const bool by_tops : {level, !level}) {
+    if (!fit_surfaces(search, by_tops ? workspace.top : workspace.all, number, fit)) continue;
+    if (kind == DeckKind::kRamp && fit.slope < kLeastSlope) continue;
+    if (fit.bend <= static_cast<float>(search.params.unevenness)) return true;
+  }
+  return false;
+}
+
+// How far below the surface points are of a side. Where a slope bends, its own points are below the
+// plane, so that only cells that hold more than it rises in them are taken to hold its side.
+float side_of(const DeckSearch& search, DeckKind kind, std::size_t slot, const DeckPlane& plane) {
+  const auto side = static_cast<float>(search.params.side);
+  const auto diagonal = static_cast<float>(1.414 * search.grid.geometry.cell_size());
+  const float rise = diagonal * std::hypot(plane.gradient_x, plane.gradient_y);
+  const bool upright = search.cells.high[slot] - search.cells.low[slot] > rise + 2.0F * side;
+  return kind == DeckKind::kLevel || upright ? side : kSlopeSide * side;
+}
+
+// Sums of the points on the surfaces of the decks, about the middles of the cells' tops.
+void sum_surface_points(const PointsView& scan, const FieldPoints& points,
+                        const PointSlots& point_slots, const FieldCells& cells,
+                        const DeckParams& params, DeckWorkspace& workspace) {
+  const auto side = static_cast<float>(params.side);
+  workspace.sums.assign(cells.size(), HeightSums{});
+  for (std::size_t i = 0; i < point_slots.size(); ++i) {
+    if (point_slots[i] < 0 || points.support[i] != Support::kAbove) continue;
+    const auto slot = static_cast<std::size_t>(point_slots[i]);
+    if (cells.deck[slot] < 0) continue;
+    const DeckPlane& plane = cells.deck_plane[slot];
+    if (scan.z[i] < plane.at(scan.x[i], scan.y[i]) - side) continue;
+    workspace.sums[slot].add(scan.x[i] - plane.x, scan.y[i] - plane.y, scan.z[i] - plane.height);
+  }
+}
+
+// How much the points on the surface around a cell scatter about their plane, over what range noise
+// and a smooth surface explain; negative if there are too few. Noise along the beams is little
+// across a surface that they meet at a grazing angle. Where the plane runs along the beams, the
+// points are those of one ring that enters something loose, such as grass.
+float scatter_at(const DeckSearch& search, const std::array<float, 3>& origin, std::size_t slot) {
+  const FieldCells& cells = search.cells;
+  const DeckPlane& at = cells.deck_plane[slot];
+  HeightSums sums;
+  search.visit_around(slot, kNearReach, [&](std::size_t other) {
+    if (cells.deck[other] != cells.deck[slot]) return;
+    const DeckPlane& from = cells.deck_plane[other];
+    sums.add_shifted(search.workspace.sums[other], from.x - at.x, from.y - at.y,
+                     from.height - at.height);
+  });
+  if (sums.n < kFewestPoints) return -1.0F;
+  const SumsPlane plane = fit_plane(sums, kHold);
+  const float x = at.x + plane.mean_x - origin[0];
+  const float y = at.y + plane.mean_y - origin[1];
+  const float z = at.height + plane.mean_z - origin[2];
+  const float range = std::max(std::sqrt(x * x + y * y + z * z), 1e-3F);
+  const float length =
+      std::sqrt(1.0F + plane.gradient_x * plane.gradient_x + plane.gradient_y * plane.gradient_y);
+  const float sine = std::abs(plane.gradient_x * x + plane.gradient_y * y - z) / (range * length);
+  if (sine < kGrazing * std::min(std::abs(z) / range, kSteep)) return kLoose;
+  const float noise = sine * static_cast<float>(search.params.beam_sigma);
+  const auto surface = static_cast<float>(search.params.surface_sigma);
+  return std::sqrt(plane.variance / (noise * noise + surface * surface)) / length;
+}
+
+// Drops decks whose points scatter more than those of a surface, and numbers those that are left.
+void drop_loose_decks(const DeckSearch& search, const std::array<float, 3>& origin,
+                      std::int32_t decks, FieldCells& cells) {
+  DeckWorkspace& workspace = search.workspace;
+  workspace.scatter.clear();
+  for (std::size_t slot = 0; slot < cells.size(); ++slot) {
+    if (cells.deck[slot] < 0) continue;
+    const float scatter = scatter_at(search, origin, slot);
+    if (scatter >= 0.0F) workspace.scatter.push_back({cells.deck[slot], scatter});
+  }
+  std::sort(workspace.scatter.begin(), workspace.scatter.end());
+  workspace.deck_number.assign(static_cast<std::size_t>(decks), -1);
+  std::int32_t left = 0;
+  for (std::size_t first = 0; first < workspace.scatter.size();) {
+    const std::int32_t deck = workspace.scatter[first].first;
+    std::size_t last = first;
+    while (last < workspace.scatter.size() && workspace.scatter[last].first == deck) ++last;
+    const float median = workspace.scatter[first + (last - first) / 2].second;
+    if (last - first >= kFewestPlanes && median <= 1.0F)
+      workspace.deck_number[static_cast<std::size_t>(deck)] = left++;
+    first = last;
+  }
+  for (std::int32_t& deck : cells.deck)
+    if (deck >= 0) deck = workspace.deck_number[static_cast<std::size_t>(deck)];
+}
+
+/// Where points of sides lie, in parts of cells.
+struct SideMap {
+  const ElevationGrid& grid;
+  std::vector<std::uint64_t>& parts;  ///< per slot: one bit for each of 8 x 8 parts
+
+  [[nodiscard]] int part_of(double position, double half, int cells) const {
+    const double place = (position + half) / grid.geometry.cell_size() * kParts;
+    return std::min(static_cast<int>(place), cells * kParts - 1);
+  }
+  [[nodiscard]] CellIndex part_at(double x, double y) const {
+    return {part_of(x, grid.geometry.half_length(), grid.geometry.cells_l()),
+            part_of(y, grid.geometry.half_width(), grid.geometry.cells_w())};
+  }
+  static std::uint64_t bit_of(CellIndex part) {
+    return std::uint64_t{1} << ((part.l % kParts) * kParts + part.w % kParts);
+  }
+  void mark(std::size_t slot, double x, double y) { parts[slot] |= bit_of(part_at(x, y)); }
+  [[nodiscard]] bool is_near(double x, double y, int reach) const {
+    const CellIndex at = part_at(x, y);
+    for (int l = std::max(at.l - reach, 0); l <= at.l + reach; ++l) {
+      for (int w = std::max(at.w - reach, 0); w <= at.w + reach; ++w) {
+        const Slot slot = grid.slot_at({l / kParts, w / kParts});
+        if (slot != kUnobserved && (parts[static_cast<std::size_t>(slot)] & bit_of({l, w})) != 0)
+          return true;
       }
     }
+    return false;
   }
-}
 
-// RMS of the height of a cell against the mean of those before and behind it, in four directions;
-// negative if there are too few such triples.
-double unevenness_of(const DeckSearch& search, std::int32_t deck, const DeckWorkspace& workspace) {
-  const GridGeometry& geometry = search.grid.geometry;
-  double sum = 0.0;
-  int triples = 0;
-  for (const std::int32_t member : workspace.members) {
-    const auto slot = static_cast<std::size_t>(member);
-    const CellIndex at = geometry.index_of(search.grid.cell[slot]);
-    for (const CellIndex step :
-         {CellIndex{1, 0}, CellIndex{0, 1}, CellIndex{1, 1}, CellIndex{1, -1}}) {
-      const Slot before = search.grid.slot_at({at.l - step.l, at.w - step.w});
-      const Slot behind = search.grid.slot_at({at.l + step.l, at.w + step.w});
-      if (before == kUnobserved || behind == kUnobserved) continue;
-      const auto b = static_cast<std::size_t>(before), f = static_cast<std::size_t>(behind);
-      if (workspace.number[b] != deck || workspace.number[f] != deck) continue;
-      const float bend = height_of(search.cells, slot) -
-                         0.5F * (height_of(search.cells, b) + height_of(search.cells, f));
-      sum += double{bend} * bend;
-      ++triples;
-    }
-  }
-  return triples < kFewestTriples ? -1.0 : std::sqrt(sum / triples);
-}
-
-struct DeckSize {
-  float lowest, highest;  // metres above the ground
-  double length;          // metres, diagonal of the rectangle around it
+  static constexpr int kParts = 8;
 };
-
-DeckSize size_of(const DeckSearch& search, const DeckWorkspace& workspace) {
-  DeckSize size{1e9F, -1e9F, 0.0};
-  for (const std::int32_t member : workspace.members) {
-    const auto slot = static_cast<std::size_t>(member);
-    size.lowest = std::min(size.lowest, above_ground(search.cells, slot));
-    size.highest = std::max(size.highest, above_ground(search.cells, slot));
-  }
-  const CellBox box = cells_around(search.grid, all_of(workspace.members), 0.0);
-  size.length = search.grid.geometry.cell_size() *
-                std::hypot(box.high.l - box.low.l + 1, box.high.w - box.low.w + 1);
-  return size;
-}
-
-// RMS of the cells' heights about the plane of least squares through them, metres; a plane that is
-// steeper than permitted fits nothing.
-double scatter_about_plane(const DeckSearch& search, const DeckParams& params,
-                           const DeckWorkspace& workspace) {
-  constexpr double kNoPlane = 1e9;
-  MomentSums sums;
-  for (const std::int32_t member : workspace.members) {
-    const auto slot = static_cast<std::size_t>(member);
-    const Position2 at =
-        search.grid.geometry.centre_of(search.grid.geometry.index_of(search.grid.cell[slot]));
-    sums.add(at.x, at.y, height_of(search.cells, slot));
-  }
-  const Moments moments = moments_from(sums);
-  HeightPlane plane;
-  if (!fit_height_plane(moments, plane)) return kNoPlane;
-  if (std::hypot(plane.gradient_x, plane.gradient_y) > std::tan(params.max_slope)) return kNoPlane;
-  return std::sqrt(plane.squares / moments.n);
-}
-
-enum class DeckKind { kNone, kRamp, kLevel };
-
-DeckKind kind_of(const DeckSearch& search, const DeckParams& params, std::int32_t deck,
-                 const DeckWorkspace& workspace) {
-  if (workspace.members.size() < kFewestCells) return DeckKind::kNone;
-  const DeckSize size = size_of(search, workspace);
-  const double cell = search.grid.geometry.cell_size();
-  const double area = static_cast<double>(workspace.members.size()) * cell * cell;
-  const double rise = size.highest - size.lowest;
-  const bool ramp = size.lowest <= params.foot && rise >= params.least_rise &&
-                    scatter_about_plane(search, params, workspace) <= params.bent * rise;
-  const bool curb = size.highest <= params.curb_height && size.length >= params.curb_length;
-  const bool terrace = size.lowest <= params.terrace_height && area >= params.terrace_area;
-  if (!ramp && !curb && !terrace) return DeckKind::kNone;
-  const double unevenness = unevenness_of(search, deck, workspace);
-  if (unevenness < 0.0 || unevenness > params.unevenness) return DeckKind::kNone;
-  return curb ? DeckKind::kLevel : DeckKind::kRamp;
-}
-
-// Top of a deck at a cell: of the cell and those of the deck beside it.
-float top_at(const DeckSearch& search, std::size_t slot, std::int32_t deck,
-             const DeckWorkspace& workspace) {
-  const CellIndex at = search.grid.geometry.index_of(search.grid.cell[slot]);
-  float top = search.cells.high[slot];
-  for (int l = at.l - 1; l <= at.l + 1; ++l) {
-    for (int w = at.w - 1; w <= at.w + 1; ++w) {
-      const Slot other = search.grid.slot_at({l, w});
-      if (other == kUnobserved) continue;
-      const auto o = static_cast<std::size_t>(other);
-      if (workspace.number[o] == deck) top = std::max(top, search.cells.high[o]);
-    }
-  }
-  return top;
-}
 
 }  // namespace
 
-void find_decks(const ElevationGrid& grid, const GroundSegmentation& ground,
+void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlots& point_slots,
+                const ElevationGrid& grid, const GroundSegmentation& ground,
                 const DeckParams& params, DeckWorkspace& workspace, FieldCells& cells) {
   const std::size_t n = grid.observed();
   workspace.candidate.resize(n);
   workspace.number.assign(n, -1);
   cells.deck.assign(n, -1);
-  cells.deck_low.assign(n, 0.0F);
-  for (std::size_t slot = 0; slot < n; ++slot) {
-    const bool thin = cells.high[slot] - cells.low[slot] <= static_cast<float>(params.thickness);
-    workspace.candidate[slot] = ground.rule[slot] == GroundRule::kHigh && thin ? 1 : 0;
-  }
-  const DeckSearch search{grid, cells, static_cast<float>(std::tan(params.max_slope))};
+  cells.deck_plane.resize(n);
+  choose_candidates(ground, params, cells, workspace);
+  measure_layers(scan.points, points, point_slots, cells, workspace);
+  const DeckSearch search{grid, cells, params, workspace,
+                          static_cast<float>(std::tan(params.max_slope))};
   std::int32_t tried = 0;
   std::int32_t found = 0;
   for (std::size_t slot = 0; slot < n; ++slot) {
     if (workspace.candidate[slot] == 0) continue;
-    collect_members(search, slot, workspace);
+    collect_members(search, slot);
     for (const std::int32_t member : workspace.members)
       workspace.number[static_cast<std::size_t>(member)] = tried;
-    const DeckKind kind = kind_of(search, params, tried, workspace);
-    if (kind != DeckKind::kNone) {
-      for (const std::int32_t member : workspace.members) {
-        const auto s = static_cast<std::size_t>(member);
-        cells.deck[s] = found;
-        cells.deck_low[s] = kind == DeckKind::kRamp ? cells.low[s]
-                                                    : top_at(search, s, tried, workspace) -
-                                                          static_cast<float>(params.side);
+    const DeckKind kind = kind_of(search);
+    if (kind != DeckKind::kNone && is_even(search, kind, tried)) {
+      for (std::size_t k = 0; k < workspace.members.size(); ++k) {
+        const auto member = static_cast<std::size_t>(workspace.members[k]);
+        cells.deck[member] = found;
+        cells.deck_plane[member] = workspace.planes[k];
+        cells.deck_plane[member].side = side_of(search, kind, member, workspace.planes[k]);
       }
       ++found;
     }
     ++tried;
+  }
+  sum_surface_points(scan.points, points, point_slots, cells, params, workspace);
+  // A moving sensor sees a deck from nearly the same place.
+  drop_loose_decks(search, scan.origins.known() ? scan.origins.of(0) : kUnknownOrigin, found,
+                   cells);
+}
+
+void label_deck_points(const PointsView& scan, const FieldPoints& points,
+                       const PointSlots& point_slots, const ElevationGrid& grid,
+                       const FieldCells& cells, const DeckParams& params, DeckWorkspace& workspace,
+                       std::vector<Support>& support) {
+  const auto side = static_cast<float>(params.side);
+  workspace.side.assign(grid.observed(), 0);
+  workspace.on_deck.clear();
+  SideMap sides{grid, workspace.side};
+  for (std::size_t i = 0; i < point_slots.size(); ++i) {
+    if (point_slots[i] < 0 || points.height[i] < kLeastSide) continue;
+    const auto slot = static_cast<std::size_t>(point_slots[i]);
+    if (cells.deck[slot] < 0) continue;
+    const DeckPlane& plane = cells.deck_plane[slot];
+    const float below = plane.at(scan.x[i], scan.y[i]) - scan.z[i];
+    if (below > plane.side) sides.mark(slot, scan.x[i], scan.y[i]);
+    if (std::abs(below) <= side && support[i] == Support::kAbove)
+      workspace.on_deck.push_back(static_cast<std::int32_t>(i));
+  }
+  const double part = grid.geometry.cell_size() / SideMap::kParts;
+  const int reach = std::clamp(static_cast<int>(params.side / part + 0.5), 1, SideMap::kParts);
+  for (const std::int32_t point : workspace.on_deck) {
+    const auto i = static_cast<std::size_t>(point);
+    if (!sides.is_near(scan.x[i], scan.y[i], reach)) support[i] = Support::kGround;
   }
 }
 

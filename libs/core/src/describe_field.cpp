@@ -87,10 +87,13 @@ void label_field_cells(const Description& description, const std::vector<Terrain
   }
 }
 
-void label_field_points(const DescriptionWorkspace& workspace, const Description& description,
+void label_field_points(const PointsView& points, const DeckParams& decks,
+                        const Description& description, DescriptionWorkspace& workspace,
                         PointLabels& result) {
   const std::size_t n = workspace.point_slots.size();
   result.support = workspace.field.points.support;
+  label_deck_points(points, workspace.field.points, workspace.point_slots, description.grid,
+                    description.field, decks, workspace.decks, result.support);
   result.reason.resize(n);
   result.terrain_class.resize(n);
   result.cluster.resize(n);
@@ -103,11 +106,6 @@ void label_field_points(const DescriptionWorkspace& workspace, const Description
     const std::int32_t slot = workspace.cluster_slots[i];
     result.cluster[i] =
         slot < 0 ? kNoCluster : description.clusters.cluster_of[static_cast<std::size_t>(slot)];
-    if (slot >= 0 && result.support[i] == Support::kAbove &&
-        description.field.deck[static_cast<std::size_t>(slot)] >= 0 &&
-        workspace.field.points.height[i] >=
-            description.field.deck_low[static_cast<std::size_t>(slot)])
-      result.support[i] = Support::kGround;
     result.terrain_class[i] = result.cluster[i] == kNoCluster
                                   ? TerrainClass::kNone
                                   : workspace.class_of[static_cast<std::size_t>(result.cluster[i])];
@@ -132,8 +130,8 @@ void describe_field(const ScanView& scan, const DescriptionParams& params,
                       description.ground);
   find_holes(workspace.field, description.grid, params.holes, workspace.holes, description.field,
              description.ground);
-  find_decks(description.grid, description.ground, params.decks, workspace.decks,
-             description.field);
+  find_decks(scan, workspace.field.points, workspace.point_slots, description.grid,
+             description.ground, params.decks, workspace.decks, description.field);
   done(Stage::kGrid);
   find_field_clusters(description.grid, description.ground, description.field,
                       params.field_clusters, workspace.field_clusters, description.clusters);
@@ -147,7 +145,7 @@ void describe_field(const ScanView& scan, const DescriptionParams& params,
   classify_all(params.classes, workspace.class_of, description.things);
   done(Stage::kClasses);
   label_field_cells(description, workspace.class_of, description.cells);
-  label_field_points(workspace, description, description.labels);
+  label_field_points(scan.points, params.decks, description, workspace, description.labels);
   done(Stage::kLabels);
 }
 

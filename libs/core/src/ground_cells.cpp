@@ -58,45 +58,21 @@ LowBand low_band_of(const Heights& heights, float band) {
   return {lowest, lowest + sum / low, low, low / (low + kHighPointWeight * high)};
 }
 
-LowSums low_sums_of(const Heights& heights, float top) {
-  LowSums sums;
+HeightSums low_sums_of(const Heights& heights, float top) {
+  HeightSums sums;
   for (const CellPoint* p = heights.first; p != heights.last; ++p) {
     const float z = p->z;
     if (z > top) continue;
     const float x = p->x - heights.centre_x;
     const float y = p->y - heights.centre_y;
-    sums.n += 1.0F;
-    sums.x += x;
-    sums.y += y;
-    sums.z += z;
-    sums.xx += x * x;
-    sums.xy += x * y;
-    sums.yy += y * y;
-    sums.xz += x * z;
-    sums.yz += y * z;
-    sums.zz += z * z;
+    sums.add(x, y, z);
   }
   return sums;
 }
 
-// Adds the sums of a cell whose centre is shifted by (x, y), and whose heights are taken from z.
-void add_shifted(const LowSums& from, float x, float y, float z, LowSums& to) {
-  const float fx = from.x + from.n * x, fy = from.y + from.n * y, fz = from.z - from.n * z;
-  to.n += from.n;
-  to.x += fx;
-  to.y += fy;
-  to.z += fz;
-  to.xx += from.xx + x * (from.x + fx);
-  to.xy += from.xy + x * from.y + y * fx;
-  to.yy += from.yy + y * (from.y + fy);
-  to.xz += from.xz - z * from.x + x * fz;
-  to.yz += from.yz - z * from.y + y * fz;
-  to.zz += from.zz - z * (from.z + fz);
-}
-
 // Variance across the plane of the points, by one over the trace of the inverse covariance: it is
 // at most the smallest eigenvalue and at least a third of it, and needs no eigenvalues.
-float variance_across(const LowSums& s) {
+float variance_across(const HeightSums& s) {
   const float x = s.x / s.n, y = s.y / s.n, z = s.z / s.n;
   const float a = s.xx / s.n - x * x, b = s.xy / s.n - x * y, c = s.yy / s.n - y * y;
   const float d = s.xz / s.n - x * z, e = s.yz / s.n - y * z, f = s.zz / s.n - z * z;
@@ -107,19 +83,20 @@ float variance_across(const LowSums& s) {
 }
 
 // Points of the nine cells about a slot, heights from its own mean.
-LowSums sums_around(const CellPoints& cells, const std::vector<LowSums>& sums, std::size_t slot) {
+HeightSums sums_around(const CellPoints& cells, const std::vector<HeightSums>& sums,
+                       std::size_t slot) {
   const SquareLattice& lattice = cells.lattice;
   const auto [row, column] = cells.cell[slot];
   const float z = sums[slot].z / sums[slot].n;
-  LowSums around;
+  HeightSums around;
   for (std::int32_t i = std::max(row - 1, 0); i <= std::min(row + 1, lattice.side - 1); ++i) {
     for (std::int32_t j = std::max(column - 1, 0); j <= std::min(column + 1, lattice.side - 1);
          ++j) {
       const std::int32_t other = cells.slot_of[static_cast<std::size_t>(i * lattice.side + j)];
       if (other < 0) continue;
-      add_shifted(sums[static_cast<std::size_t>(other)],
-                  static_cast<float>(i - row) * lattice.cell_size,
-                  static_cast<float>(j - column) * lattice.cell_size, z, around);
+      around.add_shifted(sums[static_cast<std::size_t>(other)],
+                         static_cast<float>(i - row) * lattice.cell_size,
+                         static_cast<float>(j - column) * lattice.cell_size, -z);
     }
   }
   return around;

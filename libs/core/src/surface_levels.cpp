@@ -52,9 +52,10 @@ void sum_differences(const GroundSurfaceParams& params, int level,
                      GroundSurfaceWorkspace& workspace, const GroundSurface& surface) {
   const SquareLattice& lattice = surface.lattice();
   const LevelView view = view_of_level(workspace, lattice, level);
-  const auto above =
-      static_cast<float>(params.tolerance) + static_cast<float>(params.bend) * view.cell_size;
-  const float below = -static_cast<float>(params.dip) * above;
+  const auto tolerance = static_cast<float>(params.tolerance);
+  const float bend = static_cast<float>(params.bend) * view.cell_size;
+  const auto rough_bend = static_cast<float>(params.rough_bend);
+  const float below = -static_cast<float>(params.dip) * (tolerance + bend);
   const auto low_weight = static_cast<float>(params.low_weight);
   const LevelStep* step = workspace.step.data();
   for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
@@ -63,6 +64,8 @@ void sum_differences(const GroundSurfaceParams& params, int level,
     const float reference = level == 0 ? view.height[surface.cells.number_of(cell)]
                                        : view.between(step[cell.row], step[cell.column]).height;
     const float difference = ground.low - reference;
+    // What rises and is smooth is a hill, what rises and is rough may be a bush.
+    const float above = tolerance + bend * (rough_bend + (1.0F - rough_bend) * ground.smooth);
     if (!(difference <= above && difference >= below)) continue;
     const bool limits = difference < 0.0F && (ground.points > 1.0F || level <= kFineLevel);
     const float weight = limits ? low_weight * std::max(ground.weight, kLeastBelow) : ground.weight;

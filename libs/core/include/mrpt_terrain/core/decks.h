@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "mrpt_terrain/core/field_cells.h"
+#include "mrpt_terrain/core/height_sums.h"
 #include "mrpt_terrain/core/param_info.h"
+#include "mrpt_terrain/core/scan_view.h"
 
 namespace mrpt_terrain {
 
@@ -14,15 +17,16 @@ namespace mrpt_terrain {
 struct DeckParams {
   double thickness = 0.14;  ///< metres: greatest extent in height of its points within a cell
   double max_slope = 0.5585053606381855;  ///< 32 deg, radians
-  double side = 0.025;        ///< metres: points this far below a level deck are of its side
-  double unevenness = 0.012;  ///< metres: greatest RMS bend between three cells
-  double foot = 0.25;         ///< metres: a ramp begins below this height above the ground
-  double least_rise = 0.1;    ///< metres: and rises by this much
-  double bent = 0.1;          ///< RMS of its heights about a plane, over its rise, is at most this
-  double curb_height = 0.25;  ///< metres: lower decks may be stepped onto...
-  double curb_length = 2.6;   ///< metres: ...if they are at least this long
-  double terrace_height = 0.5;  ///< metres: lower decks may be got onto somewhere...
-  double terrace_area = 12.0;   ///< m^2: ...if they are at least this large
+  double side = 0.025;           ///< metres: points this far below a level deck are of its side
+  double unevenness = 0.008;     ///< metres: median RMS of the heights of nine cells about a plane
+  double beam_sigma = 0.035;     ///< metres along the beam...
+  double surface_sigma = 0.004;  ///< ...and across the surface: scatter of points on it
+  double foot = 0.25;            ///< metres: a ramp begins below this height above the ground
+  double least_rise = 0.1;       ///< metres: and rises by this much
+  double curb_height = 0.25;     ///< metres: lower decks may be stepped onto...
+  double curb_length = 2.6;      ///< metres: ...if they are at least this long
+  double terrace_height = 0.5;   ///< metres: lower decks may be got onto somewhere...
+  double terrace_area = 12.0;    ///< m^2: ...if they are at least this large
 
   template <class Self, class Visitor>
   static void visit_params(Self& self, Visitor&& visit) {
@@ -32,14 +36,16 @@ struct DeckParams {
           ParamInfo{"max_slope_deg", "", "deg", 0.0, 80.0, "steepest deck that can be driven on"});
     visit(self.side, ParamInfo{"side", "", "m", 0.001, 1.0,
                                "points this far below a level deck are of its side"});
-    visit(self.unevenness,
-          ParamInfo{"unevenness", "", "m", 0.001, 1.0, "greatest RMS bend between three cells"});
+    visit(self.unevenness, ParamInfo{"unevenness", "", "m", 0.001, 1.0,
+                                     "greatest RMS of the heights of nine cells about a plane"});
+    visit(self.beam_sigma, ParamInfo{"beam_sigma", "", "m", 0.001, 1.0,
+                                     "greatest scatter of points of a deck along the beams"});
+    visit(self.surface_sigma, ParamInfo{"surface_sigma", "", "m", 0.001, 1.0,
+                                        "and across its surface; the squares of both add up"});
     visit(self.foot,
           ParamInfo{"foot", "", "m", 0.0, 5.0, "a ramp begins below this height above the ground"});
     visit(self.least_rise,
           ParamInfo{"least_rise", "", "m", 0.0, 5.0, "and rises by this much at least"});
-    visit(self.bent, ParamInfo{"bent", "", "", 0.0, 10.0,
-                               "greatest RMS of its heights about a plane, over its rise"});
     visit(self.curb_height,
           ParamInfo{"curb_height", "", "m", 0.0, 5.0, "lower decks can be stepped onto"});
     visit(self.curb_length,
@@ -51,18 +57,58 @@ struct DeckParams {
   }
 };
 
+/// Points of a cell: how many, their mean place, and how far that is above the ground.
+struct DeckLayer {
+  float points = 0.0F;
+  float x = 0.0F, y = 0.0F, z = 0.0F;
+  float above = 0.0F;
+
+  void add(float px, float py, float pz, float height) {
+    points += 1.0F;
+    x += px;
+    y += py;
+    z += pz;
+    above += height;
+  }
+  /// From sums to means.
+  void finish() {
+    const float share = 1.0F / (points > 0.0F ? points : 1.0F);
+    x *= share;
+    y *= share;
+    z *= share;
+    above *= share;
+  }
+};
+
 /// Scratch memory of `find_decks`.
 struct DeckWorkspace {
   std::vector<std::uint8_t> candidate;  ///< per slot
+  std::vector<DeckLayer> all, top;      ///< per candidate slot: its points, and the highest
   std::vector<std::int32_t> number;     ///< per slot: of its deck, or -1
   std::vector<std::int32_t> members;    ///< slots of one deck
+  std::vector<DeckPlane> planes;        ///< per member: the surface there
+  std::vector<float> bends, slopes;     ///< of the planes
+  std::vector<HeightSums> sums;         ///< per slot: points on the surface
+  std::vector<std::pair<std::int32_t, float>> scatter;  ///< per cell of a deck: deck, scatter
+  std::vector<std::int32_t> deck_number;                ///< per deck: number of those kept, or -1
+  std::vector<std::uint64_t> side;    ///< per slot: parts of the cell with points of a side
+  std::vector<std::int32_t> on_deck;  ///< points on a deck or near its edge
 };
 
 /// Looks for raised surfaces that can be driven on: cells whose points above the ground are one
 /// thin layer, connected without steps, even, and within reach of a wheel.
 /// \param ground cells with rule kHigh may be decks
-/// \param[in,out] cells `deck` is filled in: number of the deck, or -1; and `deck_low`
-void find_decks(const ElevationGrid& grid, const GroundSegmentation& ground,
+/// \param[in,out] cells `deck` is filled in: number of the deck, or -1; and `deck_plane`
+void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlots& point_slots,
+                const ElevationGrid& grid, const GroundSegmentation& ground,
                 const DeckParams& params, DeckWorkspace& workspace, FieldCells& cells);
+
+/// Makes the points on decks ground: those that lie on the surface or above it, but for those that
+/// have points of the deck's side, `side` below the surface, as near as that beside them.
+/// \param[in,out] support of the points, in the order of the scan
+void label_deck_points(const PointsView& scan, const FieldPoints& points,
+                       const PointSlots& point_slots, const ElevationGrid& grid,
+                       const FieldCells& cells, const DeckParams& params, DeckWorkspace& workspace,
+                       std::vector<Support>& support);
 
 }  // namespace mrpt_terrain

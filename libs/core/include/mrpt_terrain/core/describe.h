@@ -21,6 +21,7 @@
 #include "mrpt_terrain/core/label_stage.h"
 #include "mrpt_terrain/core/labels.h"
 #include "mrpt_terrain/core/roughness.h"
+#include "mrpt_terrain/core/scan_view.h"
 #include "mrpt_terrain/core/slope.h"
 
 namespace mrpt_terrain {
@@ -169,16 +170,6 @@ struct DescriptionWorkspace {
   std::vector<MomentSums> scan_sums;       ///< per slot: of the current scan
   std::vector<TerrainClass> class_of;
   IndexRows points_of;
-};
-
-/// One scan as `describe` takes it: its points, and where their beams started if that is known.
-struct ScanView {
-  PointsView points;
-  BeamOrigins origins;
-
-  // NOLINTNEXTLINE(google-explicit-constructor): points alone are a scan of unknown origin.
-  ScanView(const PointsView& points_of_scan, const BeamOrigins& origins_of_beams = {})
-      : points(points_of_scan), origins(origins_of_beams) {}
 };
 
 /// Describes one scan by the method of Meng, Cao et al. 2018: elevation grid, ground segmentation,

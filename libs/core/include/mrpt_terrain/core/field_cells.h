@@ -19,6 +19,19 @@ struct FieldPoints {
   std::vector<Support> support;  ///< kUnknown beyond the reference
 };
 
+/// The surface of a deck at one of its cells: z = height + gradient_x (x - x0) + gradient_y (y -
+/// y0), frame of the scan, metres.
+struct DeckPlane {
+  float x = 0.0F, y = 0.0F;  ///< x0, y0
+  float height = 0.0F;
+  float gradient_x = 0.0F, gradient_y = 0.0F;
+  float side = 0.0F;  ///< points this far below it are of the deck's side
+
+  [[nodiscard]] float at(float px, float py) const {
+    return height + gradient_x * (px - x) + gradient_y * (py - y);
+  }
+};
+
 /// The observed cells of a grid against the local ground reference; arrays over its slots. Heights
 /// are metres above the reference.
 struct FieldCells {
@@ -29,9 +42,9 @@ struct FieldCells {
   std::vector<float> low;           ///< lowest point above the ground; 0 without
   std::vector<float> high;          ///< highest of them; 0 without
   std::vector<float> floor;  ///< mean height of the points on and below the ground, grid frame
-  std::vector<std::int32_t> deck;  ///< number of the deck that the points above are, or -1
-  std::vector<float> deck_low;     ///< where `deck` >= 0: lower points are of the deck's side
-  std::vector<float> rim;          ///< height of the ground around the cell, grid frame
+  std::vector<std::int32_t> deck;     ///< number of the deck that the points above are, or -1
+  std::vector<DeckPlane> deck_plane;  ///< where `deck` >= 0: its surface
+  std::vector<float> rim;             ///< height of the ground around the cell, grid frame
 
   [[nodiscard]] std::size_t size() const { return ground.size(); }
 };

@@ -14,7 +14,7 @@ struct GroundLabelParams {
   double most = 0.12;        ///< metres: points higher than this are above the ground
   double growth = 0.0015;    ///< and this much more per metre of distance
   double least = 0.03;       ///< metres: points up to this height are ground
-  double prior = 0.02;       ///< how many times likelier an object's point is taken to be than seen
+  double prior = 0.008;      ///< how many times likelier an object's point is taken to be than seen
   double below = 0.3;        ///< metres: points this far below the reference are below the ground
   double sigma_min = 0.015;  ///< metres: least spread of heights on the ground
   double sigma_max = 0.04;   ///< metres: greatest spread of heights on the ground

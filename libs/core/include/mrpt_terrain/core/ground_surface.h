@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mrpt_terrain/core/cell_points.h"
+#include "mrpt_terrain/core/height_sums.h"
 #include "mrpt_terrain/core/param_info.h"
 #include "mrpt_terrain/core/points.h"
 
@@ -23,12 +24,13 @@ struct GroundSurfaceParams {
   double max_offset = 0.6;               ///< of the ground under the robot from z = 0
   double low_band = 0.06;      ///< points this far above the lowest of a cell give its low height
   double low_part = 0.4;       ///< points this far above the lowest of a cell tell how rough it is
-  double tolerance = 0.06;     ///< of low heights above the reference, on every level
+  double tolerance = 0.05;     ///< of low heights above the reference, on every level
   double bend = 0.12;          ///< the same per metre of a level's cell: how far ground rises in it
+  double rough_bend = 0.4;     ///< share of `bend` that rough cells are given
   double dip = 2.0;            ///< tolerance of heights below the reference over that above
-  double low_weight = 30.0;    ///< weight of a low height below the reference over one above
-  double smooth_sigma = 0.03;  ///< roughness at which a cell counts half
-  double rough_weight = 0.5;   ///< how little rough cells count between smooth ones
+  double low_weight = 20.0;    ///< weight of a low height below the reference over one above
+  double smooth_sigma = 0.035;  ///< roughness at which a cell counts half
+  double rough_weight = 0.8;   ///< how little rough cells count between smooth ones
   double hold = 1.0;           ///< weight of the coarser level, in cells
 
   template <class Self, class Visitor>
@@ -51,6 +53,8 @@ struct GroundSurfaceParams {
                                     "low heights this far above the coarser level are ground"});
     visit(self.bend,
           ParamInfo{"bend", "", "m/m", 0.0, 2.0, "and this much more per metre of a cell"});
+    visit(self.rough_bend,
+          ParamInfo{"rough_bend", "", "", 0.0, 1.0, "share of bend that rough cells are given"});
     visit(self.dip, ParamInfo{"dip", "", "", 0.1, 100.0,
                               "the same below the coarser level, over that above"});
     visit(self.low_weight, ParamInfo{"low_weight", "", "", 1.0, 1000.0,
@@ -90,11 +94,6 @@ struct GroundSurface {
 /// Levels of the reference; each has cells twice as large as those of the one below it.
 inline constexpr int kSurfaceLevels = 7;
 
-/// Sums of the low points of a cell about its centre in x and y.
-struct LowSums {
-  float n = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
-};
-
 /// Weighted sums of differences between low heights and a level.
 struct LevelSums {
   float sum = 0.0F, weight = 0.0F;            ///< of the cell and, less, of those around it
@@ -110,8 +109,8 @@ struct LevelStep {
 /// Scratch memory of `find_ground_surface`.
 struct GroundSurfaceWorkspace {
   CellPointsWorkspace sort;
-  std::vector<LowSums> sums;                             ///< per slot
-  std::vector<float> part;                               ///< per slot: share of the low band
+  std::vector<HeightSums> sums;  ///< per slot: low points, about the cell's centre in x and y
+  std::vector<float> part;       ///< per slot: share of the low band
   std::array<std::vector<float>, kSurfaceLevels> level;  ///< heights at the centres of cells
   std::vector<LevelStep> step;                           ///< per row, or column, of the lattice
   std::vector<LevelSums> level_sums;                     ///< per cell of a level
