@@ -2,12 +2,17 @@
 /// \file
 /// Writes doc/parameters.md (to the file named on the command line) from the field lists of the
 /// parameter structs, so that the document cannot disagree with the program.
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "app_params.h"
 #include "mrpt_terrain/core/costs.h"
+#include "mrpt_terrain/map/map_params.h"
 #include "mrpt_terrain/params/documentation.h"
 
 namespace {
@@ -30,6 +35,29 @@ A robot has a file of its own, with one section; `params/robots/` has some to st
 
 )";
 
+constexpr const char* kMaps = R"(
+# Terrain maps in MRPT's programs
+
+Sections of a map's definition in the `.ini` file of an MRPT program ([mrpt-programs.md](mrpt-programs.md)); `map` stands for the
+name of the map set's section, `00` for the number of the map. A map also takes the sections of the stages above, named
+`map_terrainMap_00_ground` and so on.
+
+)";
+
+/// The sections of a map that are not those of the stages.
+std::vector<mrpt_terrain::params::Section> own_sections(mrpt_terrain::MapParams& params) {
+  const std::string prefix = "map_terrainMap_00";
+  std::vector<mrpt_terrain::params::Section> own;
+  const auto stages = mrpt_terrain::params::sections_of(params.description);
+  for (auto& section : mrpt_terrain::map_sections(prefix, params)) {
+    const bool is_stage = std::any_of(stages.begin(), stages.end(), [&](const auto& stage) {
+      return section.name == prefix + "_" + stage.name;
+    });
+    if (!is_stage && section.name != prefix + "_robot") own.push_back(std::move(section));
+  }
+  return own;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -40,6 +68,8 @@ int main(int argc, char** argv) {
   std::ofstream file(argv[1], std::ios::binary);
   file << kIntroduction << mrpt_terrain::params::markdown_table(AppParams{}) << kRobots
        << mrpt_terrain::params::markdown_table(mrpt_terrain::RobotParams{});
+  mrpt_terrain::MapParams map;
+  file << kMaps << mrpt_terrain::params::markdown_text(own_sections(map));
   file.close();
   if (!file) {
     std::cerr << argv[1] << ": cannot be written\n";

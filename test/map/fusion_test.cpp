@@ -5,8 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <sstream>
+#include <string>
 
+#include "fused_worlds.h"
 #include "mrpt_terrain/core/fused_cell.h"
+#include "mrpt_terrain/map/map_file.h"
 #include "mrpt_terrain/map/terrain_map.h"
 #include "terrain_maps.h"
 
@@ -121,6 +126,46 @@ TEST(FusedTerrainMap, UnderABridgeIsGroundAndFreeSpace) {
   EXPECT_GT(free, seen / 2);
 }
 
+// What a negative obstacle is told by: rays go down where there should be ground, and no point was
+// ever in the cell.
+TEST(FusedTerrainMap, FreeSpaceIsToldOfCellsWithoutPointsToo) {
+  worlds::Scene scene = street();
+  scene.holes.push_back(worlds::box_solid({2.0, 5.0, -1.5, 1.5}, -3.0, 0.0, 6));
+  for (const Fusion fusion : {Fusion::kRolling, Fusion::kScan}) {
+    MapParams params = rolling_map();
+    params.creation.fusion = fusion;
+    CTerrainMap map(params);
+    drive(scene, 12, 0, map);
+    const FreeSpaceGrid pit = map.free_space({{2.0, -1.5}, {5.0, 1.5}}, -1.0, 0.5);
+    int below = 0, never_hit = 0;
+    const auto tree = map.octree();
+    for (std::size_t k = 0; k < pit.size(); ++k) {
+      const Position2 centre = pit.lattice.centre_of(pit.cell[k]);
+      for (const LayerSpan* span = pit.begin_of(k); span != pit.end_of(k); ++span) {
+        for (std::int32_t layer = span->low; layer < span->high; ++layer) {
+          const auto* node = tree->search(centre.x, centre.y, pit.lattice.bottom_of(layer) + 0.05);
+          ASSERT_TRUE(node != nullptr && !tree->isNodeOccupied(node));
+        }
+      }
+      if (pit.lowest_free(k) > -0.35) continue;
+      ++below;
+      never_hit += map.cell_at(centre.x, centre.y).status == PlaceStatus::kUnknown ? 1 : 0;
+    }
+    EXPECT_GT(below, 200);
+    EXPECT_GT(never_hit, 50);
+    const FreeSpaceGrid bridge = map.free_space({{-3.5, -1.0}, {-2.9, 1.0}}, 0.3, 1.3);
+    EXPECT_GT(bridge.size(), 50U);
+    EXPECT_EQ(bridge.find({-100, 0}), bridge.size());
+    const FreeSpaceGrid wall = map.free_space({{8.15, -1.0}, {8.2, 1.0}}, 0.5, 1.5);
+    EXPECT_EQ(wall.size(), 0U) << "nothing was seen inside the wall";
+  }
+  MapParams params = rolling_map();
+  params.creation.octree = false;
+  CTerrainMap map(params);
+  drive(street(), 1, 0, map);
+  EXPECT_EQ(map.free_space({{-3.5, -1.0}, {-2.9, 1.0}}, 0.3, 1.3).size(), 0U);
+}
+
 TEST(FusedTerrainMap, CellsBeyondTheWindowAreKnown) {
   CTerrainMap map(rolling_map());
   drive(street(), 3, 0, map);
@@ -180,6 +225,162 @@ TEST(FusedTerrainMap, TheVoxelsMustGoIntoACell) {
   EXPECT_FALSE(refused(0.05));
   EXPECT_TRUE(refused(0.2));
   EXPECT_TRUE(refused(0.07));
+}
+
+// --- Protected insertion into the OctoMap --------------------------------------------------------
+
+MapParams protected_map(bool protect, double cell_size = 0.2) {
+  MapParams params = rolling_map();
+  params.creation.octree_resolution = 0.2;
+  params.description.grid.cell_size = cell_size;
+  params.description.grid.length = params.description.grid.width = 24.0;
+  params.fusion.length = params.fusion.width = 60.0;
+  params.octree.max_range = 0.0;  // what is hit from afar only is occupied, too
+  params.octree.protect_ground = protect;
+  return params;
+}
+
+/// Where z = 0 of the robot's world lies in the map: within a layer, not on the border of two.
+constexpr double kGroundHeight = 0.09;
+
+/// Drives 12 m over level ground past a wall, on which far rays end.
+void drive_over_a_plain(CTerrainMap& map) {
+  worlds::Scene scene;
+  scene.solids.push_back(worlds::box_solid({34.0, 34.4, -20.0, 20.0}, 0.0, 4.0, 1));
+  worlds::LidarModel sensor = worlds::thirty_two_beams(0.01);
+  sensor.height = 1.2;
+  sensor.azimuth_step_deg = 0.5;
+  RandomGenerator random(5);
+  for (int k = 0; k < 24; ++k) {
+    const worlds::DriveScan scan = worlds::drive_scan(scene, sensor, 0.5 * k, 0.0, random, 60.0);
+    io::Scan inserted;
+    inserted.stamp = 100.0 + 0.1 * k;
+    inserted.points = scan.points;
+    inserted.ray_origins.push_back({0.0F, 0.0F, static_cast<float>(sensor.height)});
+    map.insert_scan(inserted, CPose3D(0.5 * k, 0.0, kGroundHeight, 0, 0, 0));
+  }
+}
+
+/// Share of the cells known as level ground whose voxel the OctoMap says to be occupied.
+double occupied_share_of_ground(const CTerrainMap& map) {
+  const TerrainSnapshotPtr now = map.snapshot();
+  const auto tree = map.octree();
+  int ground = 0, occupied = 0;
+  for (double x = 5.1; x < 25.0; x += 0.2) {
+    for (double y = -5.9; y < 6.0; y += 0.2) {
+      MapCell where;
+      FusedCell cell;
+      if (!now->fused.lattice.cell_at(x, y, where)) continue;
+      if (!read_cell(now->fused, where, now->fusion, cell) || cell.h_max > 0.2) continue;
+      const auto* node = tree->search(x, y, kGroundHeight);
+      ++ground;
+      occupied += node != nullptr && tree->isNodeOccupied(node) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(ground, 3000);
+  return static_cast<double>(occupied) / ground;
+}
+
+TEST(ProtectedOctoMap, GrazingRaysTakeNoGroundOnADrive) {
+  CTerrainMap plain(protected_map(false)), guarded(protected_map(true));
+  for (CTerrainMap* map : {&plain, &guarded}) drive_over_a_plain(*map);
+  const double without = occupied_share_of_ground(plain), with = occupied_share_of_ground(guarded);
+  std::printf("ground that is occupied: %.1f %% without, %.1f %% with\n", 100 * without,
+              100 * with);
+  EXPECT_LT(without, 0.7) << "rays did graze";
+  EXPECT_GT(with, 0.99);
+}
+
+TEST(ProtectedOctoMap, SeveralVoxelsPerCellAreGuardedToo) {
+  CTerrainMap plain(protected_map(false, 0.4)), guarded(protected_map(true, 0.4));
+  for (CTerrainMap* map : {&plain, &guarded}) drive_over_a_plain(*map);
+  const double without = occupied_share_of_ground(plain), with = occupied_share_of_ground(guarded);
+  EXPECT_GT(with, without + 0.25);
+}
+
+int occupied_voxels_of_person(const CTerrainMap& map) {
+  const auto tree = map.octree();
+  int occupied = 0;
+  for (double x = kPerson.x - 0.25; x < kPerson.x + 0.3; x += 0.1) {
+    for (double y = kPerson.y - 0.25; y < kPerson.y + 0.3; y += 0.1) {
+      for (double z = 0.25; z < 2.0; z += 0.1) {
+        const auto* node = tree->search(x, y, z);
+        occupied += node != nullptr && tree->isNodeOccupied(node) ? 1 : 0;
+      }
+    }
+  }
+  return occupied;
+}
+
+TEST(ProtectedOctoMap, APersonWhoWalkedAwayIsGone) {
+  int after[2] = {};
+  for (const bool protect : {false, true}) {
+    MapParams params = rolling_map();
+    params.octree.protect_ground = protect;
+    CTerrainMap map(params);
+    drive(street_with_person(), 6, 0, map);
+    EXPECT_GT(occupied_voxels_of_person(map), 30);
+    drive(street(), 25, 6, map);
+    after[protect ? 1 : 0] = occupied_voxels_of_person(map);
+  }
+  EXPECT_EQ(after[1], after[0]) << "as without the guard";
+  EXPECT_LT(after[1], 3);
+}
+
+TEST(ProtectedOctoMap, APlatformThatWasTakenAwayIsGone) {
+  // 1 m high and so wide that its top is all the ground there is, but for its surroundings.
+  worlds::Scene with = street(), without = street();
+  with.solids.push_back(worlds::box_solid({2.0, 5.0, -3.0, 1.0}, 0.0, 0.5, 7));
+  MapParams params = rolling_map();
+  params.octree.protect_ground = true;
+  CTerrainMap map(params);
+  drive(with, 6, 0, map);
+  const auto occupied = [&map] {
+    const auto tree = map.octree();
+    int voxels = 0;
+    for (double x = 2.05; x < 5.0; x += 0.1) {
+      for (double y = -2.95; y < 1.0; y += 0.1) {
+        for (double z = 0.25; z < 0.6; z += 0.1) {
+          const auto* node = tree->search(x, y, z);
+          voxels += node != nullptr && tree->isNodeOccupied(node) ? 1 : 0;
+        }
+      }
+    }
+    return voxels;
+  };
+  const int before = occupied();
+  EXPECT_GT(before, 200);
+  drive(without, 40, 6, map);
+  EXPECT_LT(occupied(), before / 20);
+}
+
+TEST(ProtectedOctoMap, NeedsFusedScansAndIsRefusedWithoutThem) {
+  MapParams params = protected_map(true);
+  check_together(params, "test");
+  params.creation.fusion = Fusion::kScan;
+  EXPECT_THROW(check_together(params, "test"), std::exception);
+  params = protected_map(true);
+  params.creation.octree = false;
+  EXPECT_THROW(check_together(params, "test"), std::exception);
+  EXPECT_FALSE(MapParams{}.octree.protect_ground);
+}
+
+// What is guarded comes from the grid, which is stored: a map that was read goes on as it would
+// have.
+TEST(ProtectedOctoMap, AStoredMapGoesOnAsItWouldHave) {
+  const auto stored = [](const CTerrainMap& map) {
+    std::ostringstream bytes;
+    map.octree()->writeData(bytes);
+    return bytes.str();
+  };
+  CTerrainMap map(protected_map(true));
+  drive_over_a_plain(map);
+  const std::string folder = ::testing::TempDir();
+  save_map_file(map, folder + "protected.metricmap");
+  CTerrainMap read = load_map_file(folder + "protected.metricmap");
+  EXPECT_TRUE(read.params().octree.protect_ground);
+  for (CTerrainMap* each : {&map, &read}) drive_over_a_plain(*each);
+  EXPECT_EQ(stored(map), stored(read));
 }
 
 }  // namespace

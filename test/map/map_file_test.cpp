@@ -72,24 +72,28 @@ TEST(MapFile, AnyFlippedByteIsNoticed) {
 }
 
 // Two scans of level ground at z = 1 m with a block of 0.5 m, of a robot at x = 10 and 11 m: stored
-// by the first version that had such files. It must stay readable for ever.
-TEST(MapFile, FilesOfFormat1AreRead) {
-  const CTerrainMap map =
-      load_map_file(MRPT_TERRAIN_SOURCE_DIR "/test/data/terrain_map_format_1.metricmap");
-  EXPECT_EQ(map.params().creation.fusion, Fusion::kRolling);
-  EXPECT_EQ(map.params().description.grid.cell_size, 0.25);
-  EXPECT_EQ(map.snapshot()->revision, 2U);
-  EXPECT_EQ(map.snapshot()->T_map_robot.translation().x(), 11.0);
-  EXPECT_EQ(map.snapshot()->points.size(), 256U);
-  const CellView ground = map.cell_at(9.6, 0.1), block = map.cell_at(12.35, 1.35);
-  ASSERT_EQ(ground.status, PlaceStatus::kKnown);
-  EXPECT_NEAR(ground.height, 1.0, 1e-4);
-  EXPECT_EQ(ground.points, 2);
-  ASSERT_EQ(block.status, PlaceStatus::kKnown);
-  EXPECT_NEAR(block.highest, 1.5, 1e-4);
-  const auto* voxel = map.octree()->search(12.35, 1.35, 1.55);
-  ASSERT_TRUE(voxel);
-  EXPECT_TRUE(map.octree()->isNodeOccupied(voxel));
+// by the first versions that had files of format 1 and of format 2. They must stay readable for
+// ever.
+TEST(MapFile, FilesOfOlderFormatsAreRead) {
+  for (const char* format : {"1", "2"}) {
+    const CTerrainMap map = load_map_file(std::string(MRPT_TERRAIN_SOURCE_DIR) +
+                                          "/test/data/terrain_map_format_" + format + ".metricmap");
+    EXPECT_EQ(map.params().creation.fusion, Fusion::kRolling);
+    EXPECT_EQ(map.params().description.grid.cell_size, 0.25);
+    EXPECT_FALSE(map.params().octree.protect_ground) << "they know nothing of it";
+    EXPECT_EQ(map.snapshot()->revision, 2U);
+    EXPECT_EQ(map.snapshot()->T_map_robot.translation().x(), 11.0);
+    EXPECT_EQ(map.snapshot()->points.size(), 256U);
+    const CellView ground = map.cell_at(9.6, 0.1), block = map.cell_at(12.35, 1.35);
+    ASSERT_EQ(ground.status, PlaceStatus::kKnown);
+    EXPECT_NEAR(ground.height, 1.0, 1e-4);
+    EXPECT_EQ(ground.points, 2);
+    ASSERT_EQ(block.status, PlaceStatus::kKnown);
+    EXPECT_NEAR(block.highest, 1.5, 1e-4);
+    const auto* voxel = map.octree()->search(12.35, 1.35, 1.55);
+    ASSERT_TRUE(voxel);
+    EXPECT_TRUE(map.octree()->isNodeOccupied(voxel));
+  }
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "collect_cells.h"
 #include "lidar.h"
 #include "mrpt_terrain/io/scan.h"
+#include "octomap_insertion.h"
 #include "octree_scans.h"
 #include "update_tree.h"
 
@@ -429,6 +430,146 @@ TEST(InsertScan, AnObjectThatLeavesIsReportedAsFreed) {
   ASSERT_EQ(freed.size(), 1U);
   EXPECT_EQ(freed[0].key, (std::array<std::uint16_t, 3>{32768 + 10, 32768, 32768}));
   EXPECT_EQ(freed[0].cells, 1U);
+}
+
+// --- Guarded cells -------------------------------------------------------------------------------
+
+/// A scan of one ray in a row of cells of 0.1 m: from the first cell of a layer to another place.
+OctreeScan ray(std::array<float, 3> from, std::array<float, 3> to) {
+  OctreeScan scan;
+  scan.origins = {from};
+  scan.push_back(to[0], to[1], to[2]);
+  return scan;
+}
+
+/// Column x = 10 cells, y = 0: ground in layer 0, gone if the two layers below are free.
+const std::vector<GuardedCells> kGround = {{32768 + 10, 32768, 32768, 32768, 32768 - 2}};
+
+TEST(GuardedCells, LiteralAGrazingRayFreesThemNot) {
+  InsertionWorkspace workspace;
+  const OctreeScan ground = ray({0.05F, 0.05F, 0.55F}, {1.05F, 0.05F, 0.05F});
+  const OctreeScan grazing = ray({0.05F, 0.05F, 0.05F}, {2.05F, 0.05F, 0.05F});
+  for (const bool guarded : {false, true}) {
+    OcTree tree(0.1);
+    insert_scan(ground.ends(), ground.starts(), {}, workspace, tree);
+    const InsertionOptions options{-1.0, false, guarded ? &kGround : nullptr};
+    for (int k = 0; k < 10; ++k) {
+      const auto result = insert_scan(grazing.ends(), grazing.starts(), options, workspace, tree);
+      EXPECT_EQ(result.kept, guarded ? 1U : 0U);
+    }
+    EXPECT_EQ(tree.isNodeOccupied(tree.search(1.05, 0.05, 0.05)), guarded);
+    EXPECT_FALSE(tree.isNodeOccupied(tree.search(0.95, 0.05, 0.05))) << "beside it";
+    EXPECT_TRUE(tree.isNodeOccupied(tree.search(2.05, 0.05, 0.05)));
+  }
+}
+
+TEST(GuardedCells, LiteralASurfaceThatIsGoneIsFreed) {
+  InsertionWorkspace workspace;
+  OcTree tree(0.1);
+  const OctreeScan ground = ray({0.05F, 0.05F, 0.55F}, {1.05F, 0.05F, 0.05F});
+  insert_scan(ground.ends(), ground.starts(), {}, workspace, tree);
+  const InsertionOptions options{-1.0, false, &kGround};
+  const OctreeScan into_the_pit = ray({1.05F, 0.05F, 0.55F}, {1.05F, 0.05F, -0.45F});
+  const OctreeScan not_so_deep = ray({1.05F, 0.05F, 0.55F}, {1.05F, 0.05F, -0.15F});
+  for (int k = 0; k < 5; ++k) {
+    insert_scan(not_so_deep.ends(), not_so_deep.starts(), options, workspace, tree);
+  }
+  EXPECT_TRUE(tree.isNodeOccupied(tree.search(1.05, 0.05, 0.05))) << "layer -2 was never free";
+  FreeCells known;
+  known.assign(tree);
+  std::vector<FreedCube> freed;
+  for (int k = 0; k < 5; ++k) {
+    insert_scan(into_the_pit.ends(), into_the_pit.starts(), options, workspace, tree, &freed,
+                &known);
+  }
+  EXPECT_FALSE(tree.isNodeOccupied(tree.search(1.05, 0.05, 0.05)));
+}
+
+TEST(GuardedCells, AHitForgetsWhatGrazingRaysDidBefore) {
+  InsertionWorkspace workspace;
+  const OctreeScan ground = ray({0.05F, 0.05F, 0.55F}, {1.05F, 0.05F, 0.05F});
+  const OctreeScan grazing = ray({0.05F, 0.05F, 0.05F}, {2.05F, 0.05F, 0.05F});
+  for (const bool told : {false, true}) {
+    OcTree tree(0.1);
+    FreeCells free;
+    FreeCells* const given = told ? &free : nullptr;
+    for (int k = 0; k < 5; ++k) {
+      insert_scan(grazing.ends(), grazing.starts(), {}, workspace, tree, nullptr, given);
+    }
+    ASSERT_FALSE(tree.isNodeOccupied(tree.search(1.05, 0.05, 0.05)));
+    const InsertionOptions options{-1.0, false, &kGround};
+    insert_scan(ground.ends(), ground.starts(), options, workspace, tree, nullptr, given);
+    EXPECT_EQ(tree.search(1.05, 0.05, 0.05)->getLogOdds(), tree.getProbHitLog());
+    EXPECT_LT(tree.search(0.95, 0.05, 0.05)->getLogOdds(), 0.0F) << "beside it";
+    EXPECT_EQ(free.column(32768 + 10, 32768, 32768) & 1, 0U);
+  }
+}
+
+TEST(GuardedCells, WhatIsKnownToBeFreeBelowCounts) {
+  InsertionWorkspace workspace;
+  OcTree tree(0.1);
+  const OctreeScan below = ray({1.05F, 0.05F, -0.05F}, {1.05F, 0.05F, -0.45F});
+  const OctreeScan ground = ray({0.05F, 0.05F, 0.55F}, {1.05F, 0.05F, 0.05F});
+  const OctreeScan grazing = ray({0.05F, 0.05F, 0.05F}, {2.05F, 0.05F, 0.05F});
+  FreeCells known;
+  for (const OctreeScan& scan : {below, ground}) {
+    insert_scan(scan.ends(), scan.starts(), {}, workspace, tree, nullptr, &known);
+  }
+  const InsertionOptions options{-1.0, false, &kGround};
+  insert_scan(grazing.ends(), grazing.starts(), options, workspace, tree, nullptr, &known);
+  const float after_one_miss = tree.search(1.05, 0.05, 0.05)->getLogOdds();
+  EXPECT_LT(after_one_miss, tree.getProbHitLog());
+  insert_scan(grazing.ends(), grazing.starts(), options, workspace, tree);
+  EXPECT_EQ(tree.search(1.05, 0.05, 0.05)->getLogOdds(), after_one_miss) << "not told: guarded";
+}
+
+std::vector<GuardedCells> random_guards(RandomGenerator& random) {
+  std::vector<GuardedCells> guards;
+  const auto key = [&random](int low, std::uint32_t range) {
+    return static_cast<std::uint16_t>(32768 + low + static_cast<int>(random.below(range)));
+  };
+  for (std::uint32_t n = random.below(300); n > 0; --n) {
+    const std::uint16_t low = key(-8, 16);
+    guards.push_back({key(-12, 24), key(-12, 24), low,
+                      static_cast<std::uint16_t>(low + random.below(3)),
+                      static_cast<std::uint16_t>(low - random.below(3))});
+  }
+  return guards;
+}
+
+// OctoMap's own sets of cells, less what is guarded.
+TEST(GuardedCells, OracleFuzzGivesTheTreesOfOctomapsOwnUpdates) {
+  InsertionWorkspace workspace;
+  std::size_t kept = 0;
+  for (std::uint32_t seed = 0; seed < kFuzzTrees / 2; ++seed) {
+    RandomGenerator random(seed, 9);
+    OcTree own = test::random_tree(random);
+    OcTree reference(own);
+    FreeCells known, known_before;
+    known.assign(own);
+    for (int k = 0; k < 4; ++k) {
+      const OctreeScan scan = test::random_scan(random, own.getResolution(), 1 + random.below(3));
+      InsertionOptions options = test::random_options(random, own.getResolution());
+      const std::vector<GuardedCells> guards = random_guards(random);
+      options.guarded = &guards;
+      known_before.clear();
+      known_before.assign(reference);
+      const auto result =
+          insert_scan(scan.ends(), scan.starts(), options, workspace, own, nullptr, &known);
+      const test::QuietOctomap quiet;
+      const auto expected =
+          insert_with_octomap(scan.ends(), scan.starts(), options, reference, &known_before);
+      EXPECT_EQ(result.kept, expected.kept);
+      FreeCells now;
+      now.assign(own);
+      for (const GuardedCells& at : guards) {
+        ASSERT_EQ(known.column(at.x, at.y, at.low), now.column(at.x, at.y, at.low));
+      }
+      ASSERT_TRUE(test::same_tree(own, reference)) << "seed " << seed << ", scan " << k;
+      kept += result.kept;
+    }
+  }
+  EXPECT_GT(kept, 100U);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "fused_access.h"
+#include "mrpt_terrain/core/fused_cell.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -71,23 +72,23 @@ std::optional<double> lowest_of(const Tile& tile, std::size_t place, const MapLa
 
 // Whether a height lies clearly above the ground around a cell: two thirds of the cells known there
 // have something well below it.
-bool stands_out(const Column& column, double height) {
-  const double cells = column.params.ground_reach / column.lattice.cell_size();
+bool stands_out(const FusedSnapshot& map, MapCell cell, double height, const FusionParams& params) {
+  const double cells = params.ground_reach / map.lattice.cell_size();
   const auto reach = static_cast<std::int32_t>(std::lround(cells));
   const std::int32_t most = (2 * reach + 1) * (2 * reach + 1) / 3;
   std::int32_t below = 0;
   std::int32_t level = 0;
   const Tile* tile = nullptr;
   TileIndex index{std::numeric_limits<std::int32_t>::max(), 0};
-  for (std::int32_t i = column.cell.i - reach; i <= column.cell.i + reach; ++i) {
-    for (std::int32_t j = column.cell.j - reach; j <= column.cell.j + reach; ++j) {
+  for (std::int32_t i = cell.i - reach; i <= cell.i + reach; ++i) {
+    for (std::int32_t j = cell.j - reach; j <= cell.j + reach; ++j) {
       const TileIndex next = tile_of({i, j});
-      if (next != index) tile = column.map.tiles.find(next);
+      if (next != index) tile = map.tiles.find(next);
       index = next;
       if (tile == nullptr) continue;
-      const auto lowest = lowest_of(*tile, place_in_tile({i, j}), column.lattice);
+      const auto lowest = lowest_of(*tile, place_in_tile({i, j}), map.lattice);
       if (!lowest) continue;
-      ++(*lowest < height - column.params.guard_height ? below : level);
+      ++(*lowest < height - params.guard_height ? below : level);
       if (level > most) return false;  // whatever the others are
     }
   }
@@ -102,7 +103,8 @@ Verdict judge(const Column& column, const HeightBin& bin, bool cell_hit, const G
   const double free_from = column.lattice.bottom_of(free->low);
   if (!ground.found) {  // rule 1
     const double lowest = bottom + double{bin.z_min};
-    const bool goes = free_from <= lowest - guard || stands_out(column, lowest);
+    const bool goes =
+        free_from <= lowest - guard || stands_out(column.map, column.cell, lowest, column.params);
     return goes ? Verdict::kRemoved : Verdict::kGuarded;
   }
   if (bottom + double{bin.z_max} > ground.z_min + guard) {  // rule 2
@@ -205,6 +207,29 @@ void prefetch(const FusedSnapshot& map, MapCell cell, TileIndex index, const Til
 }
 
 }  // namespace
+
+void find_guarded_ground(const FusedSnapshot& map, const MapCellRect& where,
+                         const FusionParams& params, std::vector<GuardedGround>& found) {
+  found.clear();
+  const MapCellRect known = intersection(where, map.window);
+  if (known.empty()) return;
+  const CellReader reader{map, params, std::numeric_limits<double>::infinity()};
+  FusedCell read;
+  const TileIndex low = tile_of(known.low);
+  const TileIndex high = tile_of({known.high.i - 1, known.high.j - 1});
+  for (TileIndex at = low; at.i <= high.i; ++at.i) {
+    for (at.j = low.j; at.j <= high.j; ++at.j) {
+      const Tile* tile = map.tiles.find(at);
+      for (std::size_t place = 0; tile != nullptr && place < kTileCells; ++place) {
+        const MapCell cell = cell_of(at, place);
+        std::int32_t below = 0;
+        if (!known.contains(cell) || !read_cell(reader, at, *tile, place, read)) continue;
+        if (!map.lattice.layer_at(read.h_min - params.guard_height, below)) continue;
+        if (!stands_out(map, cell, read.h_min, params)) found.push_back({cell, read.ground, below});
+      }
+    }
+  }
+}
 
 FreeSpaceCounts apply_free_space(const FreeSpaceGrid& free, const FusionParams& params,
                                  FusedGrid& grid) {

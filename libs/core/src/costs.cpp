@@ -85,19 +85,115 @@ Slot best_window(const WindowsAround& windows, std::size_t slot, std::int32_t ow
   return best;
 }
 
+// Where cells follow each other in a row of the grid, so do those around them: they are looked up
+// once for all of `kCellLanes` cells, and compared side by side.
+void find_cells_in_row(const ElevationGrid& grid, std::vector<std::uint8_t>& in_row) {
+  const std::size_t size = grid.observed();
+  in_row.resize(size);
+  for (std::size_t slot = size; slot > 0; --slot) {
+    const bool goes_on =
+        slot < size && value_of(grid.cell[slot]) == value_of(grid.cell[slot - 1]) + 1;
+    const std::size_t length = goes_on ? in_row[slot] + std::size_t{1} : 1;
+    in_row[slot - 1] = static_cast<std::uint8_t>(std::min(length, kCellLanes));
+  }
+}
+
+// Windows about cells that follow each other, and those at their sides.
+struct WindowRow {
+  static constexpr std::size_t kLength = kCellLanes + 2 * kMaxReach;
+  Slot slot[kLength];
+  float variance[kLength], cells[kLength];
+};
+
+void look_up(const ElevationGrid& grid, std::int32_t first,
+             const std::vector<WindowQuality>& qualities, std::size_t length, WindowRow& row) {
+  for (std::size_t k = 0; k < length; ++k) {
+    row.slot[k] = grid.slot_of[static_cast<std::size_t>(first) + k];
+    const WindowQuality& quality = qualities[place_of(row.slot[k])];
+    row.variance[k] = quality.variance;
+    row.cells[k] = quality.cells;
+  }
+}
+
+// Best windows so far.
+struct BestLanes {
+  FloatLanes variance, cells;
+  IntLanes slot;
+};
+// As `compare` in `best_window`, from a place of a row on.
+MRPT_TERRAIN_LANES void compare(const WindowRow& row, std::size_t at, const FloatLanes& least_cells,
+                                BestLanes& best) {
+  FloatLanes variance, cells;
+  IntLanes slot;
+  load_from(row.variance + at, variance);
+  load_from(row.cells + at, cells);
+  load_from(row.slot + at, slot);
+  const IntLanes takes = (cells >= least_cells) & (variance * best.cells < best.variance * cells);
+  best.slot = takes ? slot : best.slot;
+  best.variance = takes ? variance : best.variance;
+  best.cells = takes ? cells : best.cells;
+}
+
+MRPT_TERRAIN_WIDE_REGISTERS
+void find_best_windows(const WindowRow (&rows)[3], std::size_t reach, const float* own_cells,
+                       Slot* found) {
+  FloatLanes least_cells;
+  load_from(own_cells, least_cells);
+  const FloatLanes zero{};
+  const IntLanes none{};
+  BestLanes best{zero + std::numeric_limits<float>::infinity(), zero + 1.0F, none + kUnobserved};
+  compare(rows[1], reach, least_cells, best);
+  for (const WindowRow& row : rows) {
+    for (std::size_t w = 0; w < 3; ++w) compare(row, w * reach, least_cells, best);
+  }
+  std::memcpy(found, &best.slot, sizeof(best.slot));
+}
+
+// `best_window` of cells that follow each other. False if their windows reach beyond the sides.
+bool best_windows_of_row(const ElevationGrid& grid, int reach, std::size_t slot,
+                         const CostWorkspace& workspace, Slot* found) {
+  const auto n = static_cast<int>(kCellLanes);
+  const CellIndex centre = grid.geometry.index_of(grid.cell[slot]);
+  if (centre.w < reach || centre.w + n - 1 + reach >= grid.geometry.cells_w()) return false;
+  if (centre.l < reach || centre.l + reach >= grid.geometry.cells_l()) return false;
+  const auto length = static_cast<std::size_t>(n + 2 * reach);
+  WindowRow rows[3];
+  for (std::int32_t l = 0; l < 3; ++l) {
+    const std::int32_t first =
+        value_of(grid.cell[slot]) - reach + (l - 1) * reach * grid.geometry.stride();
+    look_up(grid, first, workspace.qualities, length, rows[l]);
+  }
+  float own_cells[kCellLanes];
+  for (std::size_t k = 0; k < kCellLanes; ++k) {
+    own_cells[k] = static_cast<float>(workspace.planes[slot + k].cells);
+  }
+  find_best_windows(rows, static_cast<std::size_t>(reach), own_cells, found);
+  return true;
+}
+
+CellSurface surface_of(const std::vector<LocalPlane>& planes, Slot window) {
+  if (window == kUnobserved) return {};
+  const LocalPlane& plane = planes[static_cast<std::size_t>(window)];
+  return {plane.x, plane.y, plane.z, plane.gradient_x, plane.gradient_y, plane.roughness, 1.0F};
+}
+
 void find_surfaces(const ElevationGrid& grid, int reach, CostWorkspace& workspace) {
   find_qualities(workspace.planes, workspace.qualities);
+  find_cells_in_row(grid, workspace.in_row);
   workspace.surfaces.resize(grid.observed() + 1);
   workspace.surfaces[place_of(kUnobserved)] = CellSurface{};
   const WindowsAround windows(grid, reach);
-  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
-    const Slot best = best_window(windows, slot, workspace.planes[slot].cells, workspace.qualities);
-    CellSurface& surface = workspace.surfaces[slot + 1];
-    surface = CellSurface{};
-    if (best == kUnobserved) continue;
-    const LocalPlane& plane = workspace.planes[static_cast<std::size_t>(best)];
-    surface = {plane.x,          plane.y,         plane.z, plane.gradient_x,
-               plane.gradient_y, plane.roughness, 1.0F};
+  Slot best[kCellLanes];
+  for (std::size_t slot = 0, count = 0; slot < grid.observed(); slot += count) {
+    const bool together = workspace.in_row[slot] == kCellLanes &&
+                          best_windows_of_row(grid, reach, slot, workspace, best);
+    count = together ? kCellLanes : 1;
+    if (!together) {
+      best[0] = best_window(windows, slot, workspace.planes[slot].cells, workspace.qualities);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      workspace.surfaces[slot + k + 1] = surface_of(workspace.planes, best[k]);
+    }
   }
 }
 
@@ -131,7 +227,17 @@ struct CellsAround {
   LaneArray steepness;                 // |gradient_x| + |gradient_y| of the cell's own surface
   LaneArray step, told;                // what comes out; told: which of the nearby, or -1
   std::int64_t lone[kCellLanes] = {};  // not 0: in some direction no surface tells the step
+  LaneArray x, y;                      // mean of the points, metres
 };
+
+void set_own(const Ground& ground, std::size_t slot, const Place& here, std::size_t lane,
+             CellsAround& cells) {
+  const CellSurface& own = ground.surfaces[slot + 1];
+  cells.mean_z.value[lane] = here.z;
+  cells.points.value[lane] = ground.grid.sums[slot].n;
+  cells.h_diff.value[lane] = double{ground.grid.h_diff(slot)};
+  cells.steepness.value[lane] = double{std::abs(own.gradient_x) + std::abs(own.gradient_y)};
+}
 
 void set_lane(const Ground& ground, std::size_t slot, std::size_t lane, CellsAround& cells) {
   const Place here = mean_of(ground.grid, slot);
@@ -146,11 +252,82 @@ void set_lane(const Ground& ground, std::size_t slot, std::size_t lane, CellsAro
     cells.height[k].value[lane] = surface.height_at(here.x, here.y);
     cells.roughness[k].value[lane] = double{surface.roughness};
   }
-  const CellSurface& own = ground.surfaces[slot + 1];
-  cells.mean_z.value[lane] = here.z;
-  cells.points.value[lane] = ground.grid.sums[slot].n;
-  cells.h_diff.value[lane] = double{ground.grid.h_diff(slot)};
-  cells.steepness.value[lane] = double{std::abs(own.gradient_x) + std::abs(own.gradient_y)};
+  set_own(ground, slot, here, lane, cells);
+}
+
+// Surfaces of cells that follow each other, and of one more at either end.
+struct SurfaceRow {
+  static constexpr std::size_t kLength = kCellLanes + 2;
+  Slot slot[kLength];
+  double x[kLength], y[kLength], z[kLength], gradient_x[kLength], gradient_y[kLength];
+  double roughness[kLength], known[kLength];
+};
+
+void look_up(const Ground& ground, std::int32_t first, SurfaceRow& row) {
+  for (std::size_t k = 0; k < SurfaceRow::kLength; ++k) {
+    row.slot[k] = ground.grid.slot_of[static_cast<std::size_t>(first) + k];
+    const CellSurface& surface = ground.surfaces[place_of(row.slot[k])];
+    row.x[k] = surface.x;
+    row.y[k] = surface.y;
+    row.z[k] = surface.z;
+    row.gradient_x[k] = double{surface.gradient_x};
+    row.gradient_y[k] = double{surface.gradient_y};
+    row.roughness[k] = double{surface.roughness};
+    row.known[k] = double{surface.known};
+  }
+}
+
+// What `set_lane` says about the nearby cells of one row: `at` cells from the first one on.
+MRPT_TERRAIN_LANES void set_nearby(const SurfaceRow& row, std::size_t at, std::size_t k,
+                                   CellsAround& cells) {
+  DoubleLanes px, py, x, y, z, gradient_x, gradient_y;
+  load(cells.x, px);
+  load(cells.y, py);
+  load_from(row.x + at, x);
+  load_from(row.y + at, y);
+  load_from(row.z + at, z);
+  load_from(row.gradient_x + at, gradient_x);
+  load_from(row.gradient_y + at, gradient_y);
+  store(z + gradient_x * (px - x) + gradient_y * (py - y), cells.height[k]);
+  std::memcpy(cells.slot[k], row.slot + at, sizeof(cells.slot[k]));
+  std::memcpy(cells.known[k].value, row.known + at, sizeof(cells.known[k].value));
+  std::memcpy(cells.roughness[k].value, row.roughness + at, sizeof(cells.roughness[k].value));
+}
+
+MRPT_TERRAIN_WIDE_REGISTERS
+void set_all_nearby(const SurfaceRow (&rows)[3], CellsAround& cells) {
+  for (std::size_t k = 0; k < kNearby; ++k) set_nearby(rows[k / 3], k % 3, k, cells);
+}
+
+// `set_lane` of cells that follow each other, the first of which has `slot`.
+void set_lanes_of_row(const Ground& ground, std::size_t slot, CellsAround& cells) {
+  for (std::size_t lane = 0; lane < kCellLanes; ++lane) {
+    const Place here = mean_of(ground.grid, slot + lane);
+    cells.x.value[lane] = here.x;
+    cells.y.value[lane] = here.y;
+    set_own(ground, slot + lane, here, lane, cells);
+  }
+  SurfaceRow rows[3];
+  for (std::int32_t l = 0; l < 3; ++l) {
+    const std::int32_t stride = ground.grid.geometry.stride();
+    look_up(ground, value_of(ground.grid.cell[slot]) + (l - 1) * stride - 1, rows[l]);
+  }
+  set_all_nearby(rows, cells);
+}
+
+// Sets up to `kCellLanes` cells from a slot on; returns how many.
+std::size_t set_lanes(const Ground& ground, const std::vector<std::uint8_t>& in_row,
+                      std::size_t slot, CellsAround& cells) {
+  if (in_row[slot] == kCellLanes) {
+    set_lanes_of_row(ground, slot, cells);
+    return kCellLanes;
+  }
+  std::size_t count = 0;
+  for (; count < kCellLanes && slot + count < in_row.size(); ++count) {
+    if (in_row[slot + count] == kCellLanes) break;
+    set_lane(ground, slot + count, count, cells);
+  }
+  return count;
 }
 
 // What is nearby, in registers.
@@ -360,9 +537,8 @@ void compute_cell_costs(const ElevationGrid& grid, const RobotParams& robot,
   costs.status.resize(size);
   const Ground ground{grid, workspace.surfaces, std::tan(robot.max_climb)};
   CellsAround cells;
-  for (std::size_t first = 0; first < size; first += kCellLanes) {
-    const std::size_t count = std::min(kCellLanes, size - first);
-    for (std::size_t lane = 0; lane < count; ++lane) set_lane(ground, first + lane, lane, cells);
+  for (std::size_t first = 0, count = 0; first < size; first += count) {
+    count = set_lanes(ground, workspace.in_row, first, cells);
     measure_lanes(ground.max_gradient, grid.geometry.cell_size(), cells);
     for (std::size_t lane = 0; lane < count; ++lane) {
       write_lane(ground, cells, lane, first + lane, workspace.planes, costs);

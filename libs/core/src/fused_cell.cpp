@@ -176,6 +176,7 @@ bool read_cell(const CellReader& reader, TileIndex index, const Tile& tile, std:
   cell.free = tile.cells[place].free;
   Layer ground;
   take_ground(reader, walk, ground, cell);
+  cell.ground = {ground.number, ground.number + 1};
   cell.h_min = ground.z_min;
   cell.h_max = ground.z_max;
   cell.last_seen = ground.last_seen;
@@ -195,7 +196,10 @@ bool read_cell(const CellReader& reader, TileIndex index, const Tile& tile, std:
       cell.overhang = layer.z_min;
       break;
     }
-    if (continues(layer, ground, reader.map.lattice)) add(points, surface);
+    if (continues(layer, ground, reader.map.lattice)) {
+      add(points, surface);
+      ++cell.ground.high;
+    }
     count_in(layer, points, cell);
     top = Heights(points);
   }

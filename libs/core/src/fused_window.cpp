@@ -118,7 +118,8 @@ void read_window(const FusedSnapshot& map, const WindowFrame& frame, const Fusio
   for_each_tile_cell(map, frame, [&](CellIndex at, const Tile& tile) {
     most += tile.cells[place_in_tile(frame.map_cell_of(at))].first != kNoBin ? 1U : 0U;
   });
-  reserve(most, grid, cells);
+  // With some room to spare, so that the memory serves for windows with a few more cells, too.
+  if (grid.cell.capacity() < most) reserve(most + most / 4, grid, cells);
   const CellReader reader{map, params, frame.z + frame.max_height};
   FusedCell cell;
   for_each_tile_cell(map, frame, [&](CellIndex at, const Tile& tile) {

@@ -16,6 +16,9 @@ typedef double DoubleLanes __attribute__((vector_size(kCellLanes * sizeof(double
 /// What a comparison of lanes gives: all bits set or none.
 typedef std::int64_t MaskLanes __attribute__((vector_size(kCellLanes * sizeof(std::int64_t))));
 
+typedef float FloatLanes __attribute__((vector_size(kCellLanes * sizeof(float))));
+typedef std::int32_t IntLanes __attribute__((vector_size(kCellLanes * sizeof(std::int32_t))));
+
 /// The same in memory, one number per lane.
 struct alignas(64) LaneArray {
   double value[kCellLanes] = {};
@@ -30,6 +33,12 @@ MRPT_TERRAIN_LANES void load(const LaneArray& array, DoubleLanes& lanes) {
 }
 MRPT_TERRAIN_LANES void store(const DoubleLanes& lanes, LaneArray& array) {
   std::memcpy(array.value, &lanes, sizeof(lanes));
+}
+/// From `kCellLanes` numbers that follow each other anywhere in memory.
+template <class Lanes, class Number>
+MRPT_TERRAIN_LANES void load_from(const Number* first, Lanes& lanes) {
+  static_assert(sizeof(lanes) == kCellLanes * sizeof(Number));
+  std::memcpy(&lanes, first, sizeof(lanes));
 }
 MRPT_TERRAIN_LANES void take_roots(DoubleLanes& lanes) {
   LaneArray array;

@@ -35,6 +35,8 @@ void describe_fused_window(const io::Scan& scan, double time, FusionHalf& fusion
   const CurrentScan current{
       {scan.points.view(), snapshot.T_map_robot, time}, origins_of(scan), scan.ray_origins.size()};
   FusedDescription result;
+  result.description = std::move(snapshot.description);
+  result.cells = std::move(snapshot.window_cells);
   describe_fused(fusion.grid.now(), current, {params.description, fusion.params}, fusion.describing,
                  result);
   snapshot.description = std::move(result.description);
@@ -46,10 +48,29 @@ void describe_fused_window(const io::Scan& scan, double time, FusionHalf& fusion
 
 }  // namespace
 
+std::shared_ptr<TerrainSnapshot> SnapshotPool::take() {
+  std::unique_ptr<TerrainSnapshot> snapshot;
+  {
+    const std::lock_guard lock(mutex_);
+    snapshot = std::move(spare_);
+  }
+  if (!snapshot) snapshot = std::make_unique<TerrainSnapshot>();
+  const auto give_back = [pool = shared_from_this()](TerrainSnapshot* used) {
+    pool->give_back(std::unique_ptr<TerrainSnapshot>(used));
+  };
+  return {snapshot.release(), give_back};
+}
+
+void SnapshotPool::give_back(std::unique_ptr<TerrainSnapshot> snapshot) {
+  snapshot->fused = {};  // the writer waits for its tiles
+  const std::lock_guard lock(mutex_);
+  spare_.swap(snapshot);  // one that was there before ends here: the lock goes first
+}
+
 std::shared_ptr<TerrainSnapshot> describe_scan(const io::Scan& scan,
                                                const Eigen::Isometry3d& T_map_robot, double time,
                                                const MapParams& params, MapWriter& writer) {
-  auto snapshot = std::make_shared<TerrainSnapshot>();
+  std::shared_ptr<TerrainSnapshot> snapshot = writer.snapshots->take();
   snapshot->stamp = scan.stamp;
   snapshot->T_map_robot = snapshot->T_map_window = T_map_robot;
   snapshot->robot = params.robot;

@@ -73,14 +73,26 @@ void find_columns(const OctreeHalf& octree, FusionHalf& fusion) {
   columns.erase(std::unique(columns.begin(), columns.end(), same), columns.end());
 }
 
+/// Tells the OctoMap which voxels hold ground. The scan is in the grid by then.
+void guard_ground(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot, FusionHalf& fusion,
+                  OctreeHalf& octree) {
+  if (!octree.protects_ground()) return;
+  const FusedSnapshot& map = fusion.grid.now();
+  find_guarded_ground(map, octree.reach_of(scan, T_map_robot, map), fusion.params, fusion.guarded);
+  octree.guard(map.lattice, fusion.guarded);
+}
+
 }  // namespace
 
-void fuse(const PosedScan& scan, FusionHalf& fusion, OctreeHalf* octree) {
-  fuse_scan(scan, fusion.params, fusion.fusing, fusion.grid);
+void fuse(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot, double time,
+          FusionHalf& fusion, OctreeHalf* octree) {
+  fuse_scan({scan.points.view(), T_map_robot, time}, fusion.params, fusion.fusing, fusion.grid);
   if (octree == nullptr) return;
+  guard_ground(scan, T_map_robot, fusion, *octree);
+  octree->insert(scan, T_map_robot);
   const MapLattice& lattice = fusion.grid.now().lattice;
   find_columns(*octree, fusion);
-  octree->find_free_space(lattice, fusion.columns, scan.time, fusion.free);
+  octree->find_free_space(lattice, fusion.columns, time, fusion.free);
   apply_free_space(fusion.free, fusion.params, fusion.grid);
   if (fusion.params.extent == FusionExtent::kRolling) {
     octree->trim(lattice, fusion.grid.now().window);

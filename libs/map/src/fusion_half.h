@@ -23,11 +23,15 @@ struct FusionHalf {
   std::vector<ColumnRequest> sorted_columns;
   std::vector<std::size_t> sort_begin;
   FreeSpaceGrid free;
+  std::vector<GuardedGround> guarded;
 };
 
-/// Fuses a scan that `octree`, if there is one, has taken in before: the heights that its rays have
-/// freed leave the grid, and what the window has left leaves the OctoMap.
-void fuse(const PosedScan& scan, FusionHalf& fusion, OctreeHalf* octree);
+/// Fuses a scan and inserts it into `octree`, if there is one: the heights that its rays have freed
+/// leave the grid, what the window has left leaves the OctoMap, and the grid says, if that is
+/// wanted, which voxels hold ground.
+/// \param time of the scan, seconds
+void fuse(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot, double time,
+          FusionHalf& fusion, OctreeHalf* octree);
 
 /// Makes an empty grid hold what a snapshot holds, without sharing anything with it.
 void copy_tiles(const FusedSnapshot& from, FusedGrid& grid);

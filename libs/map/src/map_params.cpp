@@ -150,6 +150,10 @@ void check_together(const MapParams& params, const std::string& source) {
       params.creation.fusion == Fusion::kRolling && params.creation.octree && !whole,
       "octree_resolution: must go into cell_size 1 to 64 times where scans are fused, so that the "
       "OctoMap can tell which heights of a cell are free");
+  refuse(params.octree.protect_ground &&
+             !(params.creation.fusion == Fusion::kRolling && params.creation.octree),
+         "octree_protect_ground: needs fusion = rolling and an OctoMap: the fused grid knows where "
+         "the ground is");
   refuse(params.creation.fusion == Fusion::kRolling &&
              params.description.description.mode == DescriptionMode::kField,
          "mode: field describes single scans; where scans are fused, it must be paper");

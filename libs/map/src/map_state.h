@@ -17,6 +17,21 @@
 
 namespace mrpt_terrain {
 
+/// Snapshots that nobody holds any more, to be filled again: their arrays keep their memory, so
+/// that the pages of it need not be asked for with every scan. Handles may end in any thread.
+class SnapshotPool : public std::enable_shared_from_this<SnapshotPool> {
+ public:
+  /// A snapshot that holds what some earlier one held, but for `fused`: all of it has to be
+  /// written.
+  [[nodiscard]] std::shared_ptr<TerrainSnapshot> take();
+
+ private:
+  void give_back(std::unique_ptr<TerrainSnapshot> snapshot);
+
+  std::mutex mutex_;
+  std::unique_ptr<TerrainSnapshot> spare_;
+};
+
 /// What one writer works with.
 struct MapWriter {
   std::unique_ptr<FusionHalf> fusion;  ///< null: each scan by itself
@@ -24,6 +39,7 @@ struct MapWriter {
   io::Scan scan;
   DescriptionWorkspace workspace;
   CostWorkspace costs;
+  std::shared_ptr<SnapshotPool> snapshots = std::make_shared<SnapshotPool>();
   std::uint64_t next_identity = 1;
   double time = 0.0;  ///< of the last scan, seconds; goes on where scans have no stamps
   std::string refusal;

@@ -47,6 +47,37 @@ OctreeHalf::OctreeHalf(const OctreeHalf& other) : params_(other.params_), tree_(
   free_.assign(tree_);
 }
 
+MapCellRect OctreeHalf::reach_of(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot,
+                                 const FusedSnapshot& map) const {
+  if (params_.max_range <= 0.0 || scan.ray_origins.empty()) return map.window;
+  Eigen::AlignedBox2d box;
+  for (const auto& origin : scan.ray_origins) {
+    const Eigen::Vector3d p =
+        T_map_robot * Eigen::Vector3f(origin[0], origin[1], origin[2]).cast<double>();
+    box.extend(p.head<2>());
+  }
+  MapCell low, high;
+  const double r = params_.max_range;
+  if (!map.lattice.cell_at(box.min().x() - r, box.min().y() - r, low) ||
+      !map.lattice.cell_at(box.max().x() + r, box.max().y() + r, high)) {
+    return map.window;
+  }
+  return intersection({low, {high.i + 1, high.j + 1}}, map.window);
+}
+
+void OctreeHalf::guard(const MapLattice& lattice, const std::vector<GuardedGround>& ground) {
+  const int voxels = voxels_per_cell(lattice);
+  guarded_.clear();
+  for (const GuardedGround& at : ground) {
+    for (int x = 0; x < voxels; ++x) {
+      for (int y = 0; y < voxels; ++y) {
+        guarded_.push_back({key_of(at.cell.i * voxels + x), key_of(at.cell.j * voxels + y),
+                            key_of(at.layers.low), key_of(at.layers.high - 1), key_of(at.below)});
+      }
+    }
+  }
+}
+
 void OctreeHalf::insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot) {
   const auto in_map = [&T_map_robot](float x, float y, float z) -> Eigen::Vector3f {
     return (T_map_robot * Eigen::Vector3f(x, y, z).cast<double>()).cast<float>();
@@ -68,7 +99,8 @@ void OctreeHalf::insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_rob
   const octree::RayOrigins origins{origins_.data(), origins_.size(),
                                    scan.origin_of.empty() ? nullptr : scan.origin_of.data()};
   const octree::InsertionOptions options{params_.max_range > 0.0 ? params_.max_range : -1.0,
-                                         params_.discretize};
+                                         params_.discretize,
+                                         params_.protect_ground ? &guarded_ : nullptr};
   const std::lock_guard lock(mutex_);
   copy_.reset();
   octree::insert_scan({x_.data(), y_.data(), z_.data(), n}, origins, options, workspace_, tree_,
@@ -96,6 +128,16 @@ void OctreeHalf::find_free_space(const MapLattice& lattice,
       }
     }
   }
+}
+
+void OctreeHalf::find_free_space_in(const MapLattice& lattice, const MapCellRect& cells,
+                                    LayerSpan layers, double time, FreeSpaceGrid& grid) const {
+  std::vector<ColumnRequest> columns;
+  for (std::int32_t i = cells.low.i; i < cells.high.i; ++i) {
+    for (std::int32_t j = cells.low.j; j < cells.high.j; ++j) columns.push_back({{i, j}, layers});
+  }
+  const std::lock_guard lock(mutex_);
+  find_free_space(lattice, columns, time, grid);
 }
 
 void OctreeHalf::trim(const MapLattice& lattice, const MapCellRect& window) {

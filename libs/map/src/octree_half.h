@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "mrpt_terrain/core/apply_free_space.h"
 #include "mrpt_terrain/core/free_space.h"
 #include "mrpt_terrain/core/map_lattice.h"
 #include "mrpt_terrain/io/scan.h"
@@ -36,6 +37,13 @@ class OctreeHalf {
 
   void clear();
 
+  /// Whether ground is to be guarded; if not, `guard` need not be called.
+  [[nodiscard]] bool protects_ground() const { return params_.protect_ground; }
+  /// Cells that the rays of a scan may free voxels of.
+  [[nodiscard]] MapCellRect reach_of(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot,
+                                     const FusedSnapshot& map) const;
+  /// Says what rays that graze the ground must not free in the next insertion.
+  void guard(const MapLattice& lattice, const std::vector<GuardedGround>& ground);
   /// Inserts the rays of a scan.
   /// \param T_map_robot pose of the frame of the scan's points
   void insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot);
@@ -47,6 +55,10 @@ class OctreeHalf {
   /// \param[in,out] grid overwritten
   void find_free_space(const MapLattice& lattice, const std::vector<ColumnRequest>& columns,
                        double time, FreeSpaceGrid& grid) const;
+
+  /// The same for all cells of a rectangle, in any thread.
+  void find_free_space_in(const MapLattice& lattice, const MapCellRect& cells, LayerSpan layers,
+                          double time, FreeSpaceGrid& grid) const;
 
   /// Removes all voxels over cells outside a window.
   void trim(const MapLattice& lattice, const MapCellRect& window);
@@ -62,6 +74,7 @@ class OctreeHalf {
   OctreeInsertParams params_;
   std::vector<float> x_, y_, z_;               ///< ends of a scan's rays, map frame
   std::vector<std::array<float, 3>> origins_;  ///< and their origins
+  std::vector<octree::GuardedCells> guarded_;
   octree::InsertionWorkspace workspace_;
   std::vector<octree::FreedCube> freed_;
   mutable std::mutex mutex_;

@@ -115,13 +115,36 @@ std::shared_ptr<const octomap::OcTree> CTerrainMap::octree() const {
   return state_->octree ? state_->octree->copy() : nullptr;
 }
 
+FreeSpaceGrid CTerrainMap::free_space(const MapBox& box, double low, double high) const {
+  FreeSpaceGrid grid;
+  const TerrainSnapshotPtr now = snapshot();
+  const double voxel = state_->params.creation.octree_resolution;
+  const double cell = state_->params.description.grid.cell_size;
+  const double voxels = cell / voxel;
+  const bool whole = std::abs(voxels - std::round(voxels)) < 1e-6 && voxels > 0.5;
+  grid.lattice = MapLattice(whole ? cell : voxel, voxel);
+  grid.time = now->stamp;
+  MapCell first, last;
+  LayerSpan layers;
+  const bool valid = grid.lattice.cell_at(box.min.x, box.min.y, first) &&
+                     grid.lattice.cell_at(box.max.x, box.max.y, last) &&
+                     grid.lattice.layer_at(low, layers.low) &&
+                     grid.lattice.layer_at(high, layers.high);
+  if (!valid || !state_->octree) return grid;
+  ++layers.high;
+  state_->octree->find_free_space_in(grid.lattice, {first, {last.i + 1, last.j + 1}}, layers,
+                                     now->stamp, grid);
+  return grid;
+}
+
 bool CTerrainMap::State::insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot) {
   if (!any_finite(scan.points)) return false;
   const TerrainSnapshotPtr before = snapshot();
   writer.time = std::isfinite(scan.stamp) ? scan.stamp : writer.time + kPeriod;
-  if (octree) octree->insert(scan, T_map_robot);
   if (writer.fusion) {
-    fuse({scan.points.view(), T_map_robot, writer.time}, *writer.fusion, octree.get());
+    fuse(scan, T_map_robot, writer.time, *writer.fusion, octree.get());
+  } else if (octree) {
+    octree->insert(scan, T_map_robot);
   }
   const auto next = describe_scan(scan, T_map_robot, writer.time, params, writer);
   next->revision = before->revision + 1;

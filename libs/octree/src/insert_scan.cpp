@@ -6,6 +6,7 @@
 #include <typeinfo>
 
 #include "collect_cells.h"
+#include "guard_cells.h"
 #include "octomap_insertion.h"
 #include "update_tree.h"
 
@@ -34,13 +35,16 @@ InsertionResult insert_scan(const RayEnds& ends, const RayOrigins& origins,
   assert(origins.origins != nullptr && origins.size > 0);
   if (freed != nullptr) freed->clear();
   if (!is_supported(tree)) {
-    const InsertionResult result = insert_with_octomap(ends, origins, options, tree);
+    const InsertionResult result = insert_with_octomap(ends, origins, options, tree, free);
     if (free != nullptr) free->assign(tree);
     return result;
   }
   CollectionWorkspace& collection = workspace.memory().collection;
-  const InsertionResult result =
+  InsertionResult result =
       collect_cells<Ties::kAsOctomap>(ends, origins, options, tree.getResolution(), collection);
+  if (options.guarded != nullptr) {
+    result.kept = guard_cells(*options.guarded, collection.cells, tree, free);
+  }
   update_tree(collection.cells, tree, freed, free);
   return result;
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "guard_cells.h"
 #include "rays.h"
 
 namespace mrpt_terrain::octree {
@@ -40,28 +41,34 @@ std::vector<octomap::Pointcloud> sort_by_origin(const RayEnds& ends, const RayOr
 }  // namespace
 
 InsertionResult insert_with_octomap(const RayEnds& ends, const RayOrigins& origins,
-                                    const InsertionOptions& options, octomap::OcTree& tree) {
+                                    const InsertionOptions& options, octomap::OcTree& tree,
+                                    FreeCells* before) {
   InsertionResult result;
   result.inserter = Inserter::kOctomap;
   const auto clouds =
       sort_by_origin(ends, origins, options, CellGrid(tree.getResolution()), result);
-  octomap::KeySet free, occupied;
+  KeySets cells;
   for (std::size_t k = 0; k < clouds.size(); ++k) {
     const Place& place = origins.origins[k];
     const octomap::point3d origin(place[0], place[1], place[2]);
-    if (origins.size == 1) {
+    if (origins.size == 1 && options.guarded == nullptr) {
       tree.insertPointCloud(clouds[k], origin, options.max_range, false, options.discretize);
       return result;
     }
     // Both take occupied cells out of all free ones in the end.
     if (options.discretize) {
-      tree.computeDiscreteUpdate(clouds[k], origin, free, occupied, options.max_range);
+      tree.computeDiscreteUpdate(clouds[k], origin, cells.free, cells.occupied, options.max_range);
     } else {
-      tree.computeUpdate(clouds[k], origin, free, occupied, options.max_range);
+      tree.computeUpdate(clouds[k], origin, cells.free, cells.occupied, options.max_range);
     }
   }
-  for (const octomap::OcTreeKey& key : free) tree.updateNode(key, false, false);
-  for (const octomap::OcTreeKey& key : occupied) tree.updateNode(key, true, false);
+  if (options.guarded != nullptr) {
+    // What one origin sees may be occupied for another.
+    for (const octomap::OcTreeKey& key : cells.occupied) cells.free.erase(key);
+    result.kept = guard_cells(*options.guarded, cells, tree, before);
+  }
+  for (const octomap::OcTreeKey& key : cells.free) tree.updateNode(key, false, false);
+  for (const octomap::OcTreeKey& key : cells.occupied) tree.updateNode(key, true, false);
   return result;
 }
 

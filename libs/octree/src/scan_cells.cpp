@@ -38,13 +38,47 @@ void ScanCells::mark_occupied(CellCode code) {
   occupied_[place].words[code >> 6 & 7] |= std::uint64_t{1} << (code & 63);
 }
 
-std::size_t ScanCells::tile_number(CellCode tile_code) {
+bool ScanCells::is_free(CellCode code) const {
+  const std::uint32_t block = find_block(code);
+  const std::uint64_t word =
+      free(block).words[code >> 6 & 7] & ~occupied(block).words[code >> 6 & 7];
+  return (word >> (code & 63) & 1) != 0;
+}
+
+bool ScanCells::is_occupied(CellCode code) const {
+  return (occupied(find_block(code)).words[code >> 6 & 7] >> (code & 63) & 1) != 0;
+}
+
+std::uint32_t ScanCells::find_block(CellCode code) const {
+  const std::uint32_t number = table_[place_of(code >> 18)];
+  return number == 0 ? 0 : tiles_[number - 1].block[code >> 9 & 511];
+}
+
+void ScanCells::unmark_free(CellCode code) {
+  CellTile& tile = tiles_[table_[place_of(code >> 18)] - 1];
+  std::uint32_t& block = tile.block[code >> 9 & 511];
+  CellBlock& free = free_[block];
+  free.words[code >> 6 & 7] &= ~(std::uint64_t{1} << (code & 63));
+  std::uint64_t any = occupied_of_[block];
+  for (const std::uint64_t word : free.words) any |= word;
+  if (any != 0) return;
+  // Nothing is left of the block: who walks through the tile must not meet it.
+  block = 0;
+  tile.present[code >> 15 & 7] &= ~(std::uint64_t{1} << (code >> 9 & 63));
+}
+
+// Where the hash table has a tile, or has room for it.
+std::size_t ScanCells::place_of(CellCode tile_code) const {
   std::size_t place = hash(tile_code) & (table_.size() - 1);
-  while (table_[place] != 0) {
-    const std::size_t number = table_[place] - 1;
-    if (tiles_[number].code == tile_code) return number;
+  while (table_[place] != 0 && tiles_[table_[place] - 1].code != tile_code) {
     place = (place + 1) & (table_.size() - 1);
   }
+  return place;
+}
+
+std::size_t ScanCells::tile_number(CellCode tile_code) {
+  const std::size_t place = place_of(tile_code);
+  if (table_[place] != 0) return table_[place] - 1;
   tiles_.emplace_back();
   tiles_.back().code = tile_code;
   table_[place] = static_cast<std::uint32_t>(tiles_.size());

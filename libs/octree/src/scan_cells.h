@@ -21,6 +21,12 @@ struct CellTile {
   std::uint64_t present[8] = {};   ///< a bit per block, in the order of codes
   std::uint64_t occupied[8] = {};  ///< blocks in which a ray ends
   std::uint32_t block[512] = {};   ///< number of the block; 0: there is none
+
+  [[nodiscard]] bool is_empty() const {
+    std::uint64_t any = 0;
+    for (const std::uint64_t word : present) any |= word;
+    return any == 0;
+  }
 };
 
 /// The cells that the rays of a scan cross and end in. Memory follows the tiles that were met, not
@@ -41,6 +47,13 @@ class ScanCells {
   }
 
   void mark_occupied(CellCode code);
+
+  /// Whether a ray crosses a cell and none ends in it.
+  [[nodiscard]] bool is_free(CellCode code) const;
+  /// Whether a ray ends in a cell.
+  [[nodiscard]] bool is_occupied(CellCode code) const;
+  /// Forgets that rays cross a cell, which one does.
+  void unmark_free(CellCode code);
 
   [[nodiscard]] const std::vector<CellTile>& tiles() const { return tiles_; }
   /// Cells that rays cross in a block, by the number that its tile has for it.
@@ -65,6 +78,8 @@ class ScanCells {
     return recent.number;
   }
   [[nodiscard]] std::size_t tile_number(CellCode tile_code);
+  [[nodiscard]] std::size_t place_of(CellCode tile_code) const;
+  [[nodiscard]] std::uint32_t find_block(CellCode code) const;  // 0: there is none
   std::uint32_t add_block(CellTile& tile, CellCode code);
   void double_table();
 

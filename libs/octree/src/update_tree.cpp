@@ -158,6 +158,13 @@ class Passage {
         freed_(freed),
         free_(free) {}
 
+  void update_all(const ScanCells& cells) {
+    for (const CellTile& tile : cells.tiles()) {
+      if (!tile.is_empty()) update(cells, tile);
+    }
+  }
+
+ private:
   void update(const ScanCells& cells, const CellTile& tile) {
     OcTreeNode*& root = root_of(tree_);
     const bool is_new = root == nullptr;
@@ -169,7 +176,6 @@ class Passage {
     update_node(*root, is_new, AboveTile<kTreeDepth>{{{&cells, &tile}}}, tile.code);
   }
 
- private:
   // OctoMap's early abort.
   [[nodiscard]] bool is_at_limit(float value, float change) const {
     return (change >= 0.0F && value >= greatest_) || (change <= 0.0F && value <= least_);
@@ -300,10 +306,10 @@ void update_tree(const ScanCells& cells, octomap::OcTree& tree, std::vector<Free
                  FreeCells* free) {
   if (freed == nullptr && free == nullptr) {
     Passage<false> passage(tree, nullptr, nullptr);
-    for (const CellTile& tile : cells.tiles()) passage.update(cells, tile);
+    passage.update_all(cells);
   } else {
     Passage<true> passage(tree, freed, free);
-    for (const CellTile& tile : cells.tiles()) passage.update(cells, tile);
+    passage.update_all(cells);
   }
 }
 

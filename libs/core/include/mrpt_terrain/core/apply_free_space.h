@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "mrpt_terrain/core/free_space.h"
 #include "mrpt_terrain/core/fused_grid.h"
@@ -32,5 +34,20 @@ struct FreeSpaceCounts {
 /// \param free same lattice as the grid; cells outside the grid are ignored
 FreeSpaceCounts apply_free_space(const FreeSpaceGrid& free, const FusionParams& params,
                                  FusedGrid& grid);
+
+/// Ground that rays may cross without anything being gone: they graze it.
+struct GuardedGround {
+  MapCell cell;
+  LayerSpan layers;  ///< those that hold the ground's surface
+  /// If all layers from this one up to the ground's are free, the surface is gone: `guard_height`
+  /// below its lowest point, as in rule 1 above.
+  std::int32_t below = 0;
+};
+
+/// Lists the ground of the known cells of a rectangle, without what stands out of the ground
+/// around it (second half of rule 1): what an octree beside the grid has to be guarded against.
+/// \param[out] found tile by tile; keeps its memory
+void find_guarded_ground(const FusedSnapshot& map, const MapCellRect& where,
+                         const FusionParams& params, std::vector<GuardedGround>& found);
 
 }  // namespace mrpt_terrain

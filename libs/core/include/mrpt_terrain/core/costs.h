@@ -113,6 +113,8 @@ struct CostWorkspace {
   std::vector<LocalPlane> planes;        ///< per slot: of the window about it
   std::vector<WindowQuality> qualities;  ///< the same, after an entry for unobserved cells
   std::vector<CellSurface> surfaces;     ///< likewise
+  /// Per slot: how many slots from it on are of cells that follow each other in a row, up to 8.
+  std::vector<std::uint8_t> in_row;
 };
 
 /// Cells to each side of a window: half the robot's width, from 1 to kMaxReach cells. A window is

@@ -13,6 +13,8 @@ namespace mrpt_terrain {
 struct FusedCell {
   double height = 0.0;    ///< of the ground: the mean of its lowest layer that is no outlier
   double variance = 0.0;  ///< of the points about that height, m^2
+  LayerSpan ground;       ///< the layer of the ground, and the next one if its surface lies on the
+                          ///< border of both
   double h_min = 0.0;     ///< lowest point, outliers below the ground left out
   double h_max = 0.0;     ///< highest point that does not hang over
   double low = 0.0;       ///< h_min and h_max, cut at `spread_limit` standard deviations

@@ -48,6 +48,9 @@ struct OctreeInsertParams {
   double prob_miss = 0.4;   ///< occupancy that a ray passing through speaks for
   double clamping_min = 0.1192;
   double clamping_max = 0.971;
+  /// Voxels that hold ground are not freed by rays that graze it; needs fused scans. The OctoMap is
+  /// then another one than OctoMap's own insertion makes.
+  bool protect_ground = false;
 
   template <class Self, class Visitor>
   static void visit_params(Self& self, Visitor&& visit) {
@@ -63,6 +66,9 @@ struct OctreeInsertParams {
                                        "least occupancy that a voxel can reach"});
     visit(self.clamping_max, ParamInfo{"octree_clamping_max", "", "", 0.5, 1.0,
                                        "greatest occupancy that a voxel can reach"});
+    visit(self.protect_ground,
+          ParamInfo{"octree_protect_ground", "", "", 0, 0,
+                    "rays that graze the ground do not free its voxels; needs fusion = rolling"});
   }
 };
 

@@ -64,6 +64,11 @@ class CTerrainMap : public mrpt::maps::CMetricMap {
   /// The OctoMap, as a copy that does not change any more; made when it is first asked for after an
   /// insertion, shared until the next one. Null if the map keeps none.
   [[nodiscard]] std::shared_ptr<const octomap::OcTree> octree() const;
+  /// What the OctoMap knows to be free now, as plain numbers: for all cells of a box, also those
+  /// that no point was ever in, the free layers between two heights (map frame, metres; layers that
+  /// lie across them count as a whole). Cells are those of the grid if voxels go into them, else
+  /// single voxels. No cells if the map keeps no OctoMap. Costs the cells of the box.
+  [[nodiscard]] FreeSpaceGrid free_space(const MapBox& box, double low, double high) const;
 
   // --- Writing -----------------------------------------------------------------------------------
 

@@ -17,7 +17,8 @@
 ///
 /// A scan frees the cells that its rays cross and occupies the cells that they end in; where both
 /// happen, the cell is occupied. Each cell gets one update per scan. With several origins, the
-/// cells of all rays are united before, so that this still holds for the scan as a whole.
+/// cells of all rays are united before, so that this still holds for the scan as a whole. With
+/// guarded cells, which OctoMap does not have, the tree is another one.
 namespace mrpt_terrain::octree {
 
 /// Where the rays of a scan end: three parallel arrays of coordinates, metres, frame of the tree.
@@ -37,11 +38,24 @@ struct RayOrigins {
   const std::uint32_t* origin_of = nullptr;       ///< per ray: its origin; null: all the first
 };
 
+/// Cells above each other that hold ground. Rays that graze it cross its cells above the surface,
+/// and would free them. A scan leaves them as they are, unless it frees all cells from `below` up
+/// to `low` too, or they are known to be free: then there is no surface any more. Where a ray ends
+/// in a guarded cell that is free, the cell was freed by rays that grazed it before anybody knew of
+/// the ground: that is forgotten (log-odds of 0) before the hit counts.
+struct GuardedCells {
+  std::uint16_t x = 0, y = 0;       ///< OctoMap key of the column
+  std::uint16_t low = 0, high = 0;  ///< keys along z of the ground's lowest and highest cell
+  std::uint16_t below = 0;          ///< key along z; not guarded if it is not less than `low`
+};
+
 struct InsertionOptions {
   /// Metres. Longer rays free cells up to this length and occupy none. Negative: no limit.
   double max_range = -1.0;
   /// Rays with the same origin that end in the same cell become one, to the centre of the cell.
   bool discretize = false;
+  /// Borrowed; null: none, as in OctoMap.
+  const std::vector<GuardedCells>* guarded = nullptr;
 };
 
 /// Who updated the tree.
@@ -58,6 +72,7 @@ struct InsertionResult {
   /// out; without, they free cells if they are cut at `max_range`, as in OctoMap.
   std::size_t out_of_range = 0;
   std::size_t rays = 0;  ///< rays whose cells were marked, after joining those of one cell
+  std::size_t kept = 0;  ///< cells that were crossed and not freed, because they are guarded
 };
 
 /// A cube of cells that were occupied before the scan and are not any more.
