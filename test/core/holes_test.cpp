@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -25,11 +26,14 @@ constexpr Rect kPothole{2.0, 2.6, 1.0, 1.6};  // covers nine cells of the grid
 struct Holes {
   FieldStages stages;
   HoleWorkspace workspace;
+  std::vector<HoleDescription> found;
 
-  void find(const Points& points, const HoleParams& params = {}) {
-    worlds::measure(points, worlds::field_params(), stages);
-    find_holes(stages.field, stages.grid, params, workspace, stages.cells, stages.ground);
+  void find(const ScanView& scan, const HoleParams& params = {}) {
+    worlds::measure(scan.points, worlds::field_params(), stages);
+    find_holes({stages.field, stages.grid, scan.origins}, params, workspace, stages.cells,
+               stages.ground, found);
   }
+  void find(const Points& points, const HoleParams& params = {}) { find(points.view(), params); }
   /// Slots whose cells the holes consist of.
   [[nodiscard]] std::vector<std::size_t> cells() const {
     std::vector<std::size_t> result;
@@ -114,7 +118,7 @@ TEST(Holes, LevelAndTiltedGroundHasNone) {
 }
 
 // As deep as the pothole, but without walls. Analytic: of a bell exp(-r^2 / 2 s^2), the area
-// between 0.3 and 0.65 of the depth is ln(0.65 / 0.3) / -ln(0.65) = 1.8 times that which lies
+// between 0.3 and 0.55 of the depth is ln(0.55 / 0.3) / -ln(0.55) = 1.01 times that which lies
 // deeper, more than `wall_share`.
 TEST(Holes, ABellShapedDipIsNone) {
   for (const double sigma : {0.5, 0.8, 1.5}) {
@@ -201,9 +205,11 @@ TEST(Holes, EveryParameterCounts) {
   EXPECT_TRUE(holes_in(points, params).cells().empty()) << "widest";
   params = {};
   params.rim_depth = 0.0;
-  params.rim_sigma = 0.0;
-  EXPECT_TRUE(holes_in(noisy(points, 0.005, 273), params).cells().empty()) << "rim";
-  EXPECT_FALSE(holes_in(noisy(points, 0.005, 273)).cells().empty()) << "rim";
+  EXPECT_TRUE(holes_in(noisy(points, 0.005, 273), params).cells().empty()) << "rim_depth";
+  EXPECT_FALSE(holes_in(noisy(points, 0.005, 273)).cells().empty()) << "rim_depth";
+  params = {};
+  params.rings_depth = 0.0;
+  EXPECT_TRUE(holes_in(noisy(points, 0.005, 273), params).cells().empty()) << "rings_depth";
 }
 
 // Points above the ground, over the hole and beside it, are neither floor nor rim.
@@ -250,8 +256,150 @@ TEST(Holes, UsedMemoryLeavesNoTraceAndASecondTimeDoesNotAllocate) {
   EXPECT_EQ(used.cells(), fresh.cells());
   EXPECT_EQ(used.stages.cells.rim, fresh.stages.cells.rim);
   const std::size_t before = bench::allocations();
-  find_holes(used.stages.field, used.stages.grid, {}, used.workspace, used.stages.cells,
-             used.stages.ground);
+  find_holes({used.stages.field, used.stages.grid, {}}, {}, used.workspace, used.stages.cells,
+             used.stages.ground, used.found);
+  EXPECT_EQ(bench::allocations(), before);
+}
+
+// From here on: scans of a sensor whose rings meet the ground, its place known.
+
+constexpr double kSensorHeight = 0.81;
+
+/// 32 beams from -30.67 deg to 10.67 deg, and 16 from -15 deg to 15 deg, 0.2 deg apart.
+worlds::LidarModel many_rings() {
+  worlds::LidarModel model;
+  model.beams = 32;
+  model.lowest_deg = -30.67;
+  model.highest_deg = 10.67;
+  model.azimuth_step_deg = 0.2;
+  return model;
+}
+worlds::LidarModel few_rings() {
+  worlds::LidarModel model = many_rings();
+  model.beams = 16;
+  model.lowest_deg = -15.0;
+  model.highest_deg = 15.0;
+  return model;
+}
+
+struct RingScan {
+  Points points;
+  std::array<float, 3> origin{0.0F, 0.0F, static_cast<float>(kSensorHeight)};
+  [[nodiscard]] ScanView view() const { return {points.view(), {&origin, nullptr}}; }
+};
+
+template <class Height>
+RingScan scan_of(const worlds::LidarModel& model, Height&& height) {
+  return {worlds::ring_scan(model, kSensorHeight, height)};
+}
+
+Holes holes_in_scan(const RingScan& scan, const HoleParams& params = {}) {
+  Holes result;
+  result.find(scan.view(), params);
+  return result;
+}
+
+/// A square hole with upright walls, 0.8 m wide.
+double pothole(double x, double y, double from, double depth) {
+  return x > from && x < from + 0.8 && std::abs(y - 0.3) < 0.4 ? -depth : 0.0;
+}
+
+// 0.1 m deep, 0.8 m wide. Tolerances: the near part of the floor is out of sight, at 4 m for 0.5 m,
+// so the extent along the beams and the middle are off by up to that; a cell is 0.2 m.
+TEST(HolesInRings, APotholeIsFoundWithItsPlaceAndSize) {
+  for (const double from : {2.5, 3.0, 3.5}) {
+    const Holes holes = holes_in_scan(
+        scan_of(many_rings(), [from](double x, double y) { return pothole(x, y, from, 0.1); }));
+    ASSERT_EQ(holes.found.size(), 1U) << from;
+    const HoleDescription& hole = holes.found[0];
+    EXPECT_NEAR(hole.centre.x, from + 0.4, 0.3) << from;
+    EXPECT_NEAR(hole.centre.y, 0.3, 0.1) << from;
+    EXPECT_NEAR(hole.length, 0.8, 0.3) << from;
+    EXPECT_NEAR(hole.depth, 0.1, 0.01) << from;
+    EXPECT_GE(hole.rings, 1) << from;
+    EXPECT_EQ(holes.stages.ground.rule[static_cast<std::size_t>(hole.slot)], GroundRule::kLow);
+  }
+}
+
+// The beams of -9 deg go on to the floor at 5.6 m; those of -11 and -7 deg miss the hole.
+TEST(HolesInRings, OneRingIsEnough) {
+  const Holes holes = holes_in_scan(
+      scan_of(few_rings(), [](double x, double y) { return pothole(x, y, 4.9, 0.08); }));
+  ASSERT_EQ(holes.found.size(), 1U);
+  EXPECT_EQ(holes.found[0].rings, 1);
+}
+
+// As deep as the pothole, and not much wider: a ring takes many steps from its rim to its floor.
+TEST(HolesInRings, ADipIsNone) {
+  for (const double sigma : {0.3, 0.5, 0.8}) {
+    for (const double x0 : {3.0, 4.0, 6.0}) {
+      const auto dip = [=](double x, double y) {
+        const double r = std::hypot(x - x0, y - 0.3) / sigma;
+        return -0.1 * std::exp(-0.5 * r * r);
+      };
+      EXPECT_TRUE(holes_in_scan(scan_of(many_rings(), dip)).found.empty()) << sigma << " " << x0;
+      EXPECT_TRUE(holes_in_scan(scan_of(few_rings(), dip)).found.empty()) << sigma << " " << x0;
+    }
+  }
+}
+
+// The same pothole in ground that bends: 0.25 m down over 5 m, then up again.
+TEST(HolesInRings, APotholeInRollingGroundIsFound) {
+  worlds::LidarModel model = many_rings();
+  model.beams = 64;
+  const Holes holes = holes_in_scan(scan_of(model, [](double x, double y) {
+    return 0.125 * (std::cos(x * M_PI / 5.0) - 1.0) + pothole(x, y, 3.0, 0.12);
+  }));
+  ASSERT_EQ(holes.found.size(), 1U);
+  EXPECT_NEAR(holes.found[0].centre.x, 3.4, 0.3);
+}
+
+// A lane that is lower than the ground on both sides, and goes on to the left and to the right:
+// it is far longer than what is seen of it, but narrower than `widest`. What lies beyond a step
+// down, or below the edge of a terrace, has no rim behind.
+TEST(HolesInRings, StepsDownAreNone) {
+  for (const double depth : {0.1, 0.2, 0.3, 0.5}) {
+    for (const double from : {3.0, 3.9, 5.2}) {
+      const auto step = [=](double x, double) { return x > from ? -depth : 0.0; };
+      EXPECT_TRUE(holes_in_scan(scan_of(many_rings(), step)).found.empty()) << depth << from;
+      const auto across = [=](double, double y) { return y > from ? -depth : 0.0; };
+      EXPECT_TRUE(holes_in_scan(scan_of(many_rings(), across)).found.empty()) << depth << from;
+    }
+  }
+}
+
+TEST(HolesInRings, EveryParameterCounts) {
+  const RingScan scan =
+      scan_of(many_rings(), [](double x, double y) { return pothole(x, y, 3.0, 0.1); });
+  ASSERT_EQ(holes_in_scan(scan).found.size(), 1U);
+  HoleParams params;
+  params.walled = 1.0;
+  params.closed = 1.01;
+  EXPECT_TRUE(holes_in_scan(scan, params).found.empty()) << "closed";
+  params = {};
+  params.seen = 1.01;
+  EXPECT_TRUE(holes_in_scan(scan, params).found.empty()) << "seen";
+  params = {};
+  params.walled = 1.5;
+  EXPECT_TRUE(holes_in_scan(scan, params).found.empty()) << "walled";
+  RingScan bumpy = scan_of(many_rings(), [](double x, double y) {
+    return pothole(x, y, 3.0, 0.1) + 0.008 * std::sin(4.0 * x) * std::sin(5.0 * y);
+  });
+  EXPECT_EQ(holes_in_scan(bumpy).found.size(), 1U) << "uneven_depth";
+  params = {};
+  params.uneven_depth = 0.0;
+  EXPECT_TRUE(holes_in_scan(bumpy, params).found.empty()) << "uneven_depth";
+}
+
+TEST(HolesInRings, ASecondTimeDoesNotAllocate) {
+  const RingScan scan =
+      scan_of(many_rings(), [](double x, double y) { return pothole(x, y, 3.0, 0.1); });
+  Holes used = holes_in_scan(scan);
+  ASSERT_EQ(used.found.size(), 1U);
+  const ScanView view = scan.view();
+  const std::size_t before = bench::allocations();
+  find_holes({used.stages.field, used.stages.grid, view.origins}, {}, used.workspace,
+             used.stages.cells, used.stages.ground, used.found);
   EXPECT_EQ(bench::allocations(), before);
 }
 

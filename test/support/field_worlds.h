@@ -103,12 +103,16 @@ struct FieldStages {
   FieldCells cells;
   GroundSegmentation ground;
 };
-inline void measure(const Points& points, const DescriptionParams& params, FieldStages& stages) {
+inline void measure(const PointsView& points, const DescriptionParams& params,
+                    FieldStages& stages) {
   ElevationGridWorkspace workspace;
-  find_field_ground(points.view(), params.ground_surface, params.ground_labels, stages.field);
-  build_elevation_grid(points.view(), params.grid, workspace, stages.grid, stages.point_slots,
+  find_field_ground(points, params.ground_surface, params.ground_labels, stages.field);
+  build_elevation_grid(points, params.grid, workspace, stages.grid, stages.point_slots,
                        stages.field.points.height.data());
   measure_field_cells(stages.field, stages.grid, stages.point_slots, stages.cells, stages.ground);
+}
+inline void measure(const Points& points, const DescriptionParams& params, FieldStages& stages) {
+  measure(points.view(), params, stages);
 }
 
 }  // namespace mrpt_terrain::worlds

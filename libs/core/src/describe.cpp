@@ -13,6 +13,7 @@ void describe(const ScanView& scan, const DescriptionParams& params,
     return;
   }
   description.field = FieldCells{};
+  description.holes.clear();
   description.projection = build_elevation_grid(scan.points, params.grid, workspace.grid,
                                                 description.grid, workspace.point_slots);
   describe_cells({scan, params, listener}, workspace, description);

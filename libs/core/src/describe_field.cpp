@@ -16,13 +16,15 @@ bool belongs(Support support, GroundRule rule) {
                                   : support == Support::kAbove;
 }
 
-void find_cluster_slots(const FieldPoints& points, const PointSlots& point_slots,
-                        const GroundSegmentation& ground, PointSlots& cluster_slots) {
+void find_cluster_slots(const DescriptionWorkspace& workspace, const GroundSegmentation& ground,
+                        PointSlots& cluster_slots) {
+  const FieldPoints& points = workspace.field.points;
+  const PointSlots& point_slots = workspace.point_slots;
   cluster_slots.resize(point_slots.size());
   for (std::size_t i = 0; i < point_slots.size(); ++i) {
     const std::int32_t slot = point_slots[i];
-    const bool member =
-        slot >= 0 && belongs(points.support[i], ground.rule[static_cast<std::size_t>(slot)]);
+    const bool member = slot >= 0 && workspace.holes.stray[i] == 0 &&
+                        belongs(points.support[i], ground.rule[static_cast<std::size_t>(slot)]);
     cluster_slots[i] = member ? slot : point_slot_of(UnknownReason::kNone);
   }
 }
@@ -128,15 +130,14 @@ void describe_field(const ScanView& scan, const DescriptionParams& params,
                            workspace.point_slots, workspace.field.points.height.data());
   measure_field_cells(workspace.field, description.grid, workspace.point_slots, description.field,
                       description.ground);
-  find_holes(workspace.field, description.grid, params.holes, workspace.holes, description.field,
-             description.ground);
+  find_holes({workspace.field, description.grid, scan.origins}, params.holes, workspace.holes,
+             description.field, description.ground, description.holes);
   find_decks(scan, workspace.field.points, workspace.point_slots, description.grid,
              description.ground, params.decks, workspace.decks, description.field);
   done(Stage::kGrid);
   find_field_clusters(description.grid, description.ground, description.field,
                       params.field_clusters, workspace.field_clusters, description.clusters);
-  find_cluster_slots(workspace.field.points, workspace.point_slots, description.ground,
-                     workspace.cluster_slots);
+  find_cluster_slots(workspace, description.ground, workspace.cluster_slots);
   done(Stage::kClusters);
   measure_things(stage, workspace, description);
   done(Stage::kHeightAndRoughness);

@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "height_plane.h"
+#include "hole_rim.h"
+#include "hole_rings.h"
+#include "hole_shares.h"
 #include "mrpt_terrain/core/beam_slope.h"
+#include "slots_around.h"
+#include "stray_points.h"
 #include "surface_levels.h"
 
 namespace mrpt_terrain {
@@ -21,8 +25,28 @@ constexpr float kBelowRim = 0.02F;
 constexpr float kHanging = 0.5F;
 // Walls of a hole end up to this far above its rim, metres.
 constexpr float kWallTop = 0.05F;
-// Cells around a hole that are looked at: up to this many cells away.
-constexpr int kRimReach = 2;
+// Cells of one hole are up to this many cells apart.
+constexpr int kApart = 2;
+// The rim is looked for up to this far from the cells of a hole, metres...
+constexpr double kRimReach = 0.9;
+// ...and counts half at this distance.
+constexpr double kHalfWeight = 0.2;
+// Towards the sensor, rings leave the rim this many depths over the tangent of their fall ahead of
+// the floor, with some reserve; at most so far, metres.
+constexpr double kAheadDepths = 2.0, kFarthestAhead = 2.5;
+// A cell next to a hole is part of it if this share of its points is at least half as deep.
+constexpr double kDeepShare = 0.4;
+// How far one looks for the surroundings of a hole, metres...
+constexpr double kSurroundings = 1.2;
+// ...of which the nearer ones are compared with the surface through the rim.
+constexpr double kSurfaceReach = 1.01;
+// Surroundings this much deeper or higher than the rim are none, over the depth.
+constexpr double kLowerAround = 0.5, kHigherAround = 0.5;
+// Of eight directions, in so many there is rim: on one side alone, it may be a step.
+constexpr int kFewestSides = 5;
+// Walls: traces of at least so many points on average, and so many points in all.
+constexpr double kLeastTrace = 1.5;
+constexpr int kLeastWalled = 4;
 
 struct RimLattice {
   int side;
@@ -123,33 +147,21 @@ bool holds_thing(const FieldCells& cells, std::size_t slot) {
   return cells.ground[slot] + cells.high[slot] > cells.rim[slot] + kWallTop;
 }
 
-void mark_candidates(const FieldWorkspace& field, const ElevationGrid& grid,
-                     const HoleParams& params, HoleWorkspace& workspace, FieldCells& cells) {
+void mark_candidates(const HoleInput& input, const HoleParams& params, HoleWorkspace& workspace,
+                     FieldCells& cells) {
+  const ElevationGrid& grid = input.grid;
   const auto least = static_cast<float>(params.least_depth);
   workspace.candidate.assign(grid.observed(), 0);
-  workspace.in_hole.assign(grid.observed(), 0);
+  workspace.zone.assign(grid.observed(), HoleZone::kFar);
+  workspace.deep.resize(grid.observed());
+  workspace.all.resize(grid.observed());
   cells.rim.resize(grid.observed());
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
     const Position2 centre = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[slot]));
-    cells.rim[slot] = rim_at(field.surface, workspace, static_cast<float>(centre.x),
+    cells.rim[slot] = rim_at(input.field.surface, workspace, static_cast<float>(centre.x),
                              static_cast<float>(centre.y), cells.ground[slot]);
     const bool floor = !holds_thing(cells, slot) && cells.on[slot] + cells.below[slot] > 0;
     workspace.candidate[slot] = floor && depth_of(cells, slot) >= least ? 1 : 0;
-  }
-}
-
-// Calls f with every observed slot up to `reach` cells away from a slot.
-template <class F>
-void for_slots_around(const ElevationGrid& grid, std::size_t slot, int reach, F&& f) {
-  const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
-  for (int l = std::max(at.l - reach, 0); l <= std::min(at.l + reach, grid.geometry.cells_l() - 1);
-       ++l) {
-    for (int w = std::max(at.w - reach, 0);
-         w <= std::min(at.w + reach, grid.geometry.cells_w() - 1); ++w) {
-      const Slot other =
-          grid.slot_of[static_cast<std::size_t>(value_of(grid.geometry.id_of({l, w})))];
-      if (other != kUnobserved) f(static_cast<std::size_t>(other));
-    }
   }
 }
 
@@ -159,7 +171,7 @@ void collect_members(const ElevationGrid& grid, std::size_t first, HoleWorkspace
   workspace.candidate[first] = 0;
   for (std::size_t next = 0; next < workspace.members.size(); ++next) {
     const auto slot = static_cast<std::size_t>(workspace.members[next]);
-    for_slots_around(grid, slot, kRimReach, [&](std::size_t other) {
+    for_slots_around(grid, slot, kApart, [&](std::size_t other) {
       if (workspace.candidate[other] == 0) return;
       workspace.candidate[other] = 0;
       workspace.members.push_back(static_cast<std::int32_t>(other));
@@ -167,143 +179,356 @@ void collect_members(const ElevationGrid& grid, std::size_t first, HoleWorkspace
   }
 }
 
-// Brings the points on and below the ground in and around the members together; those in the
-// members' own cells are marked.
-void collect_points(const FieldWorkspace& field, const ElevationGrid& grid, const CellBox& box,
-                    HoleWorkspace& workspace) {
-  const GroundSurface& surface = field.surface;
+/// One hole while it is looked at.
+struct HoleCase {
+  const HoleInput& input;
+  const HoleParams& params;
+  FieldCells& cells;
+  HoleWorkspace& workspace;
+  RimSurface rim;
+  double depth = 0.0;
+  unsigned sides = 0;   // of the eight directions, those in which rim is seen
+  double closed = 0.0;  // share of rim in what is seen around
+  double seen = 0.0;    // share of what is seen around
+
+  [[nodiscard]] const ElevationGrid& grid() const { return input.grid; }
+  [[nodiscard]] CellBox box() const {
+    return cells_around(input.grid, all_of(workspace.members), 0.0);
+  }
+};
+
+bool is_too_wide(const HoleCase& hole) {
+  const CellBox box = hole.box();
+  const int across = 1 + std::min(box.high.l - box.low.l, box.high.w - box.low.w);
+  return hole.grid().geometry.cell_size() * across > hole.params.widest;
+}
+
+void mark_zones(HoleCase& hole) {
+  std::vector<HoleZone>& zone = hole.workspace.zone;
+  for (const std::int32_t slot : hole.workspace.members)
+    zone[static_cast<std::size_t>(slot)] = HoleZone::kFloor;
+  for (const std::int32_t slot : hole.workspace.members) {
+    for_slots_around(hole.grid(), static_cast<std::size_t>(slot), 1, [&zone](std::size_t near) {
+      if (zone[near] == HoleZone::kFar) zone[near] = HoleZone::kNear;
+    });
+  }
+}
+
+void clear_zones(HoleCase& hole) {
+  std::vector<HoleZone>& zone = hole.workspace.zone;
+  for (const std::int32_t slot : hole.workspace.members) {
+    for_slots_around(hole.grid(), static_cast<std::size_t>(slot), 1,
+                     [&zone](std::size_t near) { zone[near] = HoleZone::kFar; });
+  }
+}
+
+/// A rectangle in metres, and its part towards the sensor.
+struct HoleWindow {
+  Position2 low, high;
+  double ahead_x = 0.0, ahead_y = 0.0;
+  [[nodiscard]] bool contains(double x, double y) const {
+    return x >= low.x && x <= high.x && y >= low.y && y <= high.y;
+  }
+};
+
+HoleWindow window_around(const HoleCase& hole) {
+  const CellBox box = hole.box();
+  const GridGeometry& geometry = hole.grid().geometry;
+  const double reach = kRimReach + geometry.cell_size() / 2;
+  const Position2 low = geometry.centre_of(box.low), high = geometry.centre_of(box.high);
+  HoleWindow window{{low.x - reach, low.y - reach}, {high.x + reach, high.y + reach}};
+  if (!hole.input.origins.known()) return window;
+  constexpr double kLeastFall = 0.02, kLeastRange = 0.1;
+  float deepest = 0.0F;
+  for (const std::int32_t slot : hole.workspace.members)
+    deepest = std::max(deepest, depth_of(hole.cells, static_cast<std::size_t>(slot)));
+  const auto& origin = hole.input.origins.of(0);
+  const double dx = origin[0] - 0.5 * (low.x + high.x), dy = origin[1] - 0.5 * (low.y + high.y);
+  const double range = std::max(std::hypot(dx, dy), kLeastRange);
+  const auto first = static_cast<std::size_t>(hole.workspace.members.front());
+  const double fall = std::max((origin[2] - hole.cells.rim[first]) / range, kLeastFall);
+  const double ahead = std::min({kAheadDepths * deepest / fall, kFarthestAhead, range});
+  window.ahead_x = dx / range * ahead;
+  window.ahead_y = dy / range * ahead;
+  return window;
+}
+
+void add_points(HoleCase& hole, const HoleWindow& window, std::size_t slot) {
+  const GroundSurface& surface = hole.input.field.surface;
+  const ElevationGrid& grid = hole.grid();
+  for (std::int32_t k = surface.cells.first[slot]; k < surface.cells.first[slot + 1]; ++k) {
+    if (hole.input.field.support[static_cast<std::size_t>(k)] == Support::kAbove) continue;
+    const CellPoint& p = surface.cells.points[static_cast<std::size_t>(k)];
+    CellIndex cell;
+    if (!grid.geometry.cell_at(p.x, p.y, cell)) continue;
+    const Slot of = grid.slot_at(cell);
+    if (of == kUnobserved) continue;
+    HoleZone zone = hole.workspace.zone[static_cast<std::size_t>(of)];
+    if (zone == HoleZone::kFar && window.contains(p.x, p.y)) zone = HoleZone::kRim;
+    const float above_cell = hole.cells.rim[static_cast<std::size_t>(of)] - p.z;
+    hole.workspace.points.push_back({p.x, p.y, p.z, p.index, of, 1.0F, above_cell, zone});
+  }
+}
+
+// Brings the points on and below the ground in and around the members together. Their depths are
+// those below the rim of their cells.
+void collect_points(HoleCase& hole) {
+  const GroundSurface& surface = hole.input.field.surface;
   const SquareLattice& lattice = surface.lattice();
-  const double reach = kRimReach * grid.geometry.cell_size() + grid.geometry.cell_size() / 2;
-  const Position2 low = grid.geometry.centre_of(box.low), high = grid.geometry.centre_of(box.high);
+  const HoleWindow window = window_around(hole);
   const auto index = [&lattice](double metres) {
     const int at = static_cast<int>(std::floor(metres / lattice.cell_size)) + lattice.side / 2;
     return std::clamp(at, 0, lattice.side - 1);
   };
-  workspace.points.clear();
-  for (int row = index(low.x - reach); row <= index(high.x + reach); ++row) {
-    for (int column = index(low.y - reach); column <= index(high.y + reach); ++column) {
+  const Position2 low{window.low.x + std::min(window.ahead_x, 0.0),
+                      window.low.y + std::min(window.ahead_y, 0.0)};
+  const Position2 high{window.high.x + std::max(window.ahead_x, 0.0),
+                       window.high.y + std::max(window.ahead_y, 0.0)};
+  hole.workspace.points.clear();
+  for (int row = index(low.x); row <= index(high.x); ++row) {
+    for (int column = index(low.y); column <= index(high.y); ++column) {
       const std::int32_t slot = surface.cells.slot_of[surface.cells.number_of({row, column})];
-      if (slot < 0) continue;
-      const auto s = static_cast<std::size_t>(slot);
-      for (std::int32_t k = surface.cells.first[s]; k < surface.cells.first[s + 1]; ++k) {
-        if (field.support[static_cast<std::size_t>(k)] == Support::kAbove) continue;
-        const CellPoint& point = surface.cells.points[static_cast<std::size_t>(k)];
-        CellIndex cell;
-        if (!grid.geometry.cell_at(point.x, point.y, cell)) continue;
-        const Slot of = grid.slot_at(cell);
-        if (of == kUnobserved) continue;
-        workspace.points.push_back(
-            {point.x, point.y, point.z, workspace.in_hole[static_cast<std::size_t>(of)] != 0});
-      }
+      if (slot >= 0) add_points(hole, window, static_cast<std::size_t>(slot));
     }
   }
 }
 
-// Plane z = a x + b y + c through the rim, about the mean of its points.
-struct RimPlane {
-  double x = 0.0, y = 0.0, z = 0.0, a = 0.0, b = 0.0;
-  double sigma = 0.0;
-  int points = 0;
-  [[nodiscard]] double above(const HolePoint& p) const {
-    return z + a * (p.x - x) + b * (p.y - y) - p.z;
+// The nearer to the hole, the more a point of the rim counts.
+void weigh_points(HoleCase& hole) {
+  const CellBox box = hole.box();
+  const GridGeometry& geometry = hole.grid().geometry;
+  const double half = geometry.cell_size() / 2;
+  const Position2 low = geometry.centre_of(box.low), high = geometry.centre_of(box.high);
+  for (HolePoint& p : hole.workspace.points) {
+    const double dx = std::max({low.x - half - p.x, p.x - high.x - half, 0.0});
+    const double dy = std::max({low.y - half - p.y, p.y - high.y - half, 0.0});
+    p.weight = static_cast<float>(1.0 / (1.0 + (dx * dx + dy * dy) / (kHalfWeight * kHalfWeight)));
   }
+}
+
+// Fits the rim, and measures the depth that a fifth of the floor's points exceed.
+bool measure_depth(HoleCase& hole) {
+  weigh_points(hole);
+  if (!fit_rim(hole.workspace.points, hole.params.least_depth, hole.rim)) return false;
+  std::vector<float>& depths = hole.workspace.values;
+  depths.clear();
+  for (HolePoint& p : hole.workspace.points) {
+    if (p.zone == HoleZone::kFar) continue;
+    p.depth = static_cast<float>(hole.rim.height_at(p.x, p.y)) - p.z;
+    if (p.zone == HoleZone::kFloor) depths.push_back(p.depth);
+  }
+  if (depths.empty()) return false;
+  const auto fifth = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() * 4 / 5);
+  std::nth_element(depths.begin(), fifth, depths.end());
+  hole.depth = *fifth;
+  return hole.depth >= hole.params.mean_depth;
+}
+
+// Adds the cells next to the members that hold mostly deep points, and those next to these.
+void grow(HoleCase& hole) {
+  const ElevationGrid& grid = hole.grid();
+  HoleWorkspace& workspace = hole.workspace;
+  for (const HolePoint& p : workspace.points) {
+    const auto slot = static_cast<std::size_t>(p.slot);
+    workspace.deep[slot] = workspace.all[slot] = 0;
+  }
+  for (const HolePoint& p : workspace.points) {
+    if (p.zone == HoleZone::kFar) continue;
+    const auto slot = static_cast<std::size_t>(p.slot);
+    ++workspace.all[slot];
+    if (p.depth >= 0.5 * hole.depth) ++workspace.deep[slot];
+  }
+  clear_zones(hole);
+  for (const std::int32_t slot : workspace.members)
+    workspace.zone[static_cast<std::size_t>(slot)] = HoleZone::kFloor;
+  for (std::size_t next = 0; next < workspace.members.size(); ++next) {
+    const auto slot = static_cast<std::size_t>(workspace.members[next]);
+    for_slots_around(grid, slot, 1, [&](std::size_t near) {
+      if (workspace.zone[near] == HoleZone::kFloor || workspace.deep[near] == 0) return;
+      if (workspace.deep[near] < kDeepShare * workspace.all[near]) return;
+      if (holds_thing(hole.cells, near)) return;
+      workspace.zone[near] = HoleZone::kFloor;
+      workspace.members.push_back(static_cast<std::int32_t>(near));
+    });
+  }
+  mark_zones(hole);
+  for (HolePoint& p : workspace.points) {
+    if (p.zone == HoleZone::kFar) continue;
+    const HoleZone zone = workspace.zone[static_cast<std::size_t>(p.slot)];
+    p.zone = zone == HoleZone::kFar ? HoleZone::kRim : zone;
+  }
+}
+
+/// What is met first on the way out of a hole.
+enum class Surrounding : std::uint8_t { kHole, kUnseen, kRim, kOther };
+
+Surrounding look_out(const HoleCase& hole, CellIndex at, int step_l, int step_w) {
+  const ElevationGrid& grid = hole.grid();
+  const double cell_size = grid.geometry.cell_size();
+  const int farthest = static_cast<int>(kSurroundings / cell_size + 0.5);
+  for (int n = 1; n <= farthest; ++n) {
+    const CellIndex cell{at.l + n * step_l, at.w + n * step_w};
+    const Slot slot = grid.slot_at(cell);
+    if (slot == kUnobserved) continue;
+    const auto s = static_cast<std::size_t>(slot);
+    if (hole.workspace.zone[s] == HoleZone::kFloor) return Surrounding::kHole;
+    if (hole.cells.on[s] + hole.cells.below[s] == 0) {
+      // What lies behind things is not seen. Edges of deep holes are above the reference, too.
+      if (hole.cells.ground[s] + hole.cells.high[s] > hole.cells.rim[s] + kWallTop)
+        return Surrounding::kUnseen;
+      continue;
+    }
+    const Position2 centre = grid.geometry.centre_of(cell);
+    const double rim =
+        n * cell_size < kSurfaceReach ? hole.rim.height_at(centre.x, centre.y) : hole.cells.rim[s];
+    const double share = (rim - hole.cells.floor[s]) / hole.depth;
+    // Next to the hole may be its wall.
+    if (n == 1 && share > kRimShare && share < 1.0 + kRimShare) continue;
+    return share > kLowerAround || share < -kHigherAround ? Surrounding::kOther : Surrounding::kRim;
+  }
+  return Surrounding::kUnseen;
+}
+
+int bits_of(unsigned bits) {
+  int count = 0;
+  for (; bits != 0; bits &= bits - 1U) ++count;
+  return count;
+}
+
+void look_around(HoleCase& hole) {
+  int rim = 0, other = 0, unseen = 0;
+  for (const std::int32_t slot : hole.workspace.members) {
+    const CellIndex at =
+        hole.grid().geometry.index_of(hole.grid().cell[static_cast<std::size_t>(slot)]);
+    for (int direction = 0; direction < 9; ++direction) {
+      const int l = direction / 3 - 1, w = direction % 3 - 1;
+      if (l == 0 && w == 0) continue;
+      switch (look_out(hole, at, l, w)) {
+        case Surrounding::kRim:
+          ++rim;
+          hole.sides |= 1U << static_cast<unsigned>(direction);
+          break;
+        case Surrounding::kOther:
+          ++other;
+          break;
+        case Surrounding::kUnseen:
+          ++unseen;
+          break;
+        case Surrounding::kHole:
+          break;
+      }
+    }
+  }
+  hole.closed = static_cast<double>(rim) / std::max(rim + other, 1);
+  hole.seen = static_cast<double>(rim + other) / std::max(rim + other + unseen, 1);
+}
+
+/// Points of a hole and its walls, by depth.
+struct HoleCounts {
+  int between = 0, floor = 0;
 };
 
-// Least squares over the rim's points that are not more than `low` below the plane so far.
-RimPlane fit_rim(const std::vector<HolePoint>& points, const RimPlane* before, double low) {
+HoleCounts count_points(const HoleCase& hole) {
+  HoleCounts counts;
+  for (const HolePoint& p : hole.workspace.points) {
+    if (p.zone != HoleZone::kFloor && p.zone != HoleZone::kNear) continue;
+    const double share = p.depth / hole.depth;
+    counts.between += share > kRimShare && share < kFloorShare ? 1 : 0;
+    counts.floor += share >= kFloorShare ? 1 : 0;
+  }
+  return counts;
+}
+
+// Whether the floor ends at walls, and the rim is even enough for what shows it.
+bool has_walls(const HoleCase& hole, const HoleCounts& counts, RingEvidence& rings) {
+  const HoleParams& params = hole.params;
+  if (!hole.input.origins.known()) {
+    return counts.between <= params.wall_share * counts.floor &&
+           hole.rim.sigma <= params.rim_depth * hole.depth;
+  }
+  rings = follow_rings(hole.workspace.points, hole.input.origins, hole.depth, hole.workspace);
+  const double uneven =
+      std::sqrt(std::max(0.0, hole.rim.sigma * hole.rim.sigma - rings.noise * rings.noise));
+  if (uneven > params.uneven_depth * hole.depth) return false;
+  if (rings.walled < kLeastWalled || rings.walled < kLeastTrace * rings.traces) return false;
+  if (rings.walled < params.walled * counts.floor) return false;
+  if (rings.rings >= 2) return true;
+  return hole.rim.sigma <= params.rim_depth * hole.depth && rings.strictly >= kLeastWalled;
+}
+
+HoleDescription describe_hole(const HoleCase& hole, const HoleCounts& counts,
+                              const RingEvidence& rings) {
+  const GridGeometry& geometry = hole.grid().geometry;
   MomentSums sums;
-  for (const HolePoint& p : points) {
-    if (p.in_hole || (before != nullptr && before->above(p) > low)) continue;
-    sums.add(p.x, p.y, p.z);
+  for (const std::int32_t slot : hole.workspace.members) {
+    const Position2 centre =
+        geometry.centre_of(geometry.index_of(hole.grid().cell[static_cast<std::size_t>(slot)]));
+    sums.add(centre.x, centre.y, 0.0);
   }
   const Moments m = moments_from(sums);
-  RimPlane rim{m.mean_x, m.mean_y, m.mean_z};
-  rim.points = static_cast<int>(m.n);
-  HeightPlane plane;
-  if (m.n < 6 || !fit_height_plane(m, plane)) return rim;
-  rim.a = plane.gradient_x;
-  rim.b = plane.gradient_y;
-  rim.sigma = std::sqrt(plane.squares / (m.n - 3.0));
-  return rim;
-}
-
-// Depth that a fifth of the points in the hole exceed.
-double depth_below(const RimPlane& rim, HoleWorkspace& workspace) {
-  workspace.depths.clear();
-  for (const HolePoint& p : workspace.points) {
-    if (p.in_hole) workspace.depths.push_back(static_cast<float>(rim.above(p)));
-  }
-  if (workspace.depths.empty()) return 0.0;
-  const auto fifth =
-      workspace.depths.begin() + static_cast<std::ptrdiff_t>(workspace.depths.size() * 4 / 5);
-  std::nth_element(workspace.depths.begin(), fifth, workspace.depths.end());
-  return *fifth;
-}
-
-// In how many of the four quarters about the middle of the hole there is rim.
-int quarters_of_rim(const std::vector<HolePoint>& points, const RimPlane& rim, double low) {
+  // Variances along the axes of the cells; a rectangle of length l has l^2 / 12.
+  const double cell = geometry.cell_size() * geometry.cell_size() / 12.0;
+  const double xx = m.m_xx / m.n + cell, yy = m.m_yy / m.n + cell, xy = m.m_xy / m.n;
+  const double middle = 0.5 * (xx + yy), apart = std::hypot(0.5 * (xx - yy), xy);
+  HoleDescription result;
+  result.length = std::sqrt(12.0 * (middle + apart));
+  result.width = std::sqrt(12.0 * std::max(middle - apart, 0.0));
+  result.depth = hole.depth;
+  result.points = counts.floor;
+  result.rings = rings.rings;
+  result.slot = *std::min_element(hole.workspace.members.begin(), hole.workspace.members.end());
   double x = 0.0, y = 0.0, n = 0.0;
-  for (const HolePoint& p : points) {
-    if (!p.in_hole) continue;
+  for (const HolePoint& p : hole.workspace.points) {
+    if (p.zone != HoleZone::kFloor) continue;
     x += p.x;
     y += p.y;
     n += 1.0;
   }
-  unsigned seen = 0;
-  for (const HolePoint& p : points) {
-    if (p.in_hole || std::abs(rim.above(p)) > low) continue;
-    seen |= 1U << ((p.x > x / n ? 1U : 0U) + (p.y > y / n ? 2U : 0U));
-  }
-  return static_cast<int>((seen & 1U) + (seen >> 1U & 1U) + (seen >> 2U & 1U) + (seen >> 3U));
+  result.centre = {x / n, y / n};
+  return result;
 }
 
-// Walls are steep: few of the points lie between the rim and the floor.
-bool has_walls(const HoleParams& params, const RimPlane& rim, double depth,
-               const std::vector<HolePoint>& points) {
-  constexpr double kRim = 0.3, kFloor = 0.65;  // shares of the depth
-  int between = 0, deep = 0;
-  for (const HolePoint& p : points) {
-    const double share = rim.above(p) / depth;
-    between += share > kRim && share < kFloor ? 1 : 0;
-    deep += share >= kFloor ? 1 : 0;
-  }
-  return deep >= params.least_points && between <= params.wall_share * deep;
-}
-
-bool is_hole(const FieldWorkspace& field, const ElevationGrid& grid, const HoleParams& params,
-             HoleWorkspace& workspace) {
-  constexpr int kFewestRimPoints = 8;
-  constexpr double kRimBand = 0.3;  // share of the depth that the rim may lie low
-  const CellBox box = cells_around(grid, all_of(workspace.members), 0.0);
-  const int across = 1 + std::min(box.high.l - box.low.l, box.high.w - box.low.w);
-  if (grid.geometry.cell_size() * across > params.widest) return false;
-  for (const std::int32_t slot : workspace.members)
-    workspace.in_hole[static_cast<std::size_t>(slot)] = 1;
-  collect_points(field, grid, box, workspace);
-  for (const std::int32_t slot : workspace.members)
-    workspace.in_hole[static_cast<std::size_t>(slot)] = 0;
-  const RimPlane all = fit_rim(workspace.points, nullptr, 0.0);
-  const RimPlane rim = fit_rim(workspace.points, &all, params.least_depth);
-  if (rim.points < kFewestRimPoints) return false;
-  const double depth = depth_below(rim, workspace);
-  if (depth < params.mean_depth) return false;
-  if (rim.sigma > std::max(params.rim_depth * depth, params.rim_sigma)) return false;
-  if (quarters_of_rim(workspace.points, rim, kRimBand * depth) < 3) return false;
-  return has_walls(params, rim, depth, workspace.points);
+bool is_hole(HoleCase& hole, HoleDescription& description) {
+  if (is_too_wide(hole)) return false;
+  mark_zones(hole);
+  collect_points(hole);
+  if (!measure_depth(hole)) return false;
+  grow(hole);
+  if (is_too_wide(hole) || !measure_depth(hole)) return false;
+  if (hole.rim.sigma > hole.params.rings_depth * hole.depth) return false;
+  const HoleCounts counts = count_points(hole);
+  if (counts.floor < hole.params.least_points) return false;
+  look_around(hole);
+  if (hole.closed < hole.params.closed || hole.seen < hole.params.seen) return false;
+  if (bits_of(hole.sides) < kFewestSides) return false;
+  RingEvidence rings;
+  if (!has_walls(hole, counts, rings)) return false;
+  description = describe_hole(hole, counts, rings);
+  return true;
 }
 
 }  // namespace
 
-void find_holes(const FieldWorkspace& field, const ElevationGrid& grid, const HoleParams& params,
-                HoleWorkspace& workspace, FieldCells& cells, GroundSegmentation& ground) {
-  measure_rim(field, workspace);
-  mark_candidates(field, grid, params, workspace, cells);
-  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
+void find_holes(const HoleInput& input, const HoleParams& params, HoleWorkspace& workspace,
+                FieldCells& cells, GroundSegmentation& ground,
+                std::vector<HoleDescription>& holes) {
+  holes.clear();
+  take_back_stray_cells(input, params.least_points, cells, workspace, ground);
+  measure_rim(input.field, workspace);
+  mark_candidates(input, params, workspace, cells);
+  for (std::size_t slot = 0; slot < input.grid.observed(); ++slot) {
     if (workspace.candidate[slot] == 0) continue;
-    collect_members(grid, slot, workspace);
-    if (!is_hole(field, grid, params, workspace)) continue;
-    for (const std::int32_t member : workspace.members)
+    collect_members(input.grid, slot, workspace);
+    HoleCase hole{input, params, cells, workspace, {}};
+    HoleDescription description;
+    const bool found = is_hole(hole, description);
+    clear_zones(hole);
+    if (!found) continue;
+    holes.push_back(description);
+    for (const std::int32_t member : workspace.members) {
       ground.rule[static_cast<std::size_t>(member)] = GroundRule::kLow;
+      workspace.candidate[static_cast<std::size_t>(member)] = 0;
+    }
   }
 }
 

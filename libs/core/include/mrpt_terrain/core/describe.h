@@ -130,6 +130,7 @@ struct Description {
   ElevationGrid grid;
   GroundSegmentation ground;
   FieldCells field;  ///< field mode: the cells against the ground reference; empty in paper mode
+  std::vector<HoleDescription> holes;  ///< field mode: holes in the ground, with or without cluster
   Clusters clusters;
   std::vector<ClusterDescription> things;  ///< one per cluster, same numbers
   CellLabels cells;                        ///< one per slot of the grid

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "mrpt_terrain/core/beam_plane.h"
 #include "mrpt_terrain/core/field_cells.h"
+#include "mrpt_terrain/core/grid_geometry.h"
 #include "mrpt_terrain/core/param_info.h"
 
 namespace mrpt_terrain {
@@ -13,10 +15,14 @@ namespace mrpt_terrain {
 struct HoleParams {
   double least_depth = 0.03;  ///< metres below the rim from which a cell may belong to a hole
   double mean_depth = 0.035;  ///< metres: least depth of a hole
-  int least_points = 6;       ///< fewest points in it
-  double rim_depth = 0.12;    ///< greatest spread of the rim about its plane, over the depth
-  double rim_sigma = 0.009;   ///< metres: or this, whichever is greater
-  double wall_share = 1.5;    ///< most points between rim and floor, over those on the floor
+  int least_points = 6;       ///< fewest points on its floor
+  double rim_depth = 0.15;    ///< greatest spread of the rim about its surface, over the depth
+  double rings_depth = 0.25;  ///< the same where two rings or more show the floor
+  double uneven_depth = 0.2;  ///< greatest spread of the rim without the noise, over the depth
+  double wall_share = 0.45;   ///< most points between rim and floor, over those on the floor
+  double walled = 0.4;        ///< least share of the floor's points in traces that end at walls
+  double closed = 0.95;       ///< least share of the surroundings that are seen and are rim
+  double seen = 0.4;          ///< least share of the surroundings that are seen
   double widest = 3.0;        ///< metres: greatest extent across
 
   template <class Self, class Visitor>
@@ -27,15 +33,40 @@ struct HoleParams {
                                      "least depth of a hole, which a fifth of its points exceed"});
     visit(self.least_points,
           ParamInfo{"least_points", "", "", 1, 1000000, "holes of fewer points are left out"});
-    visit(self.rim_depth, ParamInfo{"rim_depth", "", "", 0.0, 1.0,
-                                    "greatest spread of the rim about its plane, over the depth"});
-    visit(self.rim_sigma,
-          ParamInfo{"rim_sigma", "", "m", 0.0, 1.0, "or this spread, whichever is greater"});
-    visit(self.wall_share, ParamInfo{"wall_share", "", "", 0.0, 100.0,
-                                     "most points between rim and floor, over those on the floor"});
+    visit(self.rim_depth,
+          ParamInfo{"rim_depth", "", "", 0.0, 1.0,
+                    "greatest spread of the rim about its surface, over the depth"});
+    visit(self.rings_depth, ParamInfo{"rings_depth", "", "", 0.0, 1.0,
+                                      "the same where two rings or more show the floor"});
+    visit(self.uneven_depth,
+          ParamInfo{"uneven_depth", "", "", 0.0, 1.0,
+                    "greatest spread of the rim without the noise, over the depth"});
+    visit(self.wall_share,
+          ParamInfo{"wall_share", "", "", 0.0, 100.0,
+                    "where origins of beams are unknown: most points between rim and floor, over "
+                    "those on the floor"});
+    visit(self.walled,
+          ParamInfo{"walled", "", "", 0.0, 1.0,
+                    "least share of the floor's points in traces of a ring that end at walls"});
+    visit(self.closed, ParamInfo{"closed", "", "", 0.0, 1.0,
+                                 "least share of rim in what is seen around a hole"});
+    visit(self.seen,
+          ParamInfo{"seen", "", "", 0.0, 1.0, "least share of what is seen around a hole"});
     visit(self.widest,
           ParamInfo{"widest", "", "m", 0.1, 100.0, "greatest extent of a hole across"});
   }
+};
+
+/// A hole as it was found. Metres, frame of the scan.
+struct HoleDescription {
+  Position2 centre;         ///< mean of its floor's points
+  double length = 0.0;      ///< along its longer axis; of a rectangle with the cells' moments
+  double width = 0.0;       ///< across
+  double depth = 0.0;       ///< below the rim, a lower bound: what was seen of the floor
+  double confidence = 0.0;  ///< 0 to 1
+  std::int32_t points = 0;  ///< on the floor
+  std::int32_t rings = 0;   ///< that show the floor between two walls; 0: origins unknown
+  std::int32_t slot = -1;   ///< one of its cells
 };
 
 /// Mean height of the ground about a cell of the rim's level.
@@ -48,10 +79,32 @@ struct RimBase {
   float height = 0.0F, gradient_x = 0.0F, gradient_y = 0.0F;
 };
 
+/// Where a point lies with respect to a hole.
+enum class HoleZone : std::uint8_t {
+  kFar = 0,  ///< towards the sensor: only rings are followed there
+  kRim,      ///< around
+  kNear,     ///< in a cell next to one of the hole
+  kFloor     ///< in a cell of the hole
+};
+
 /// A point in or around a hole.
 struct HolePoint {
-  float x, y, z;
-  bool in_hole;  ///< in a cell of the hole
+  float x, y, z;       ///< metres
+  std::int32_t index;  ///< in the scan
+  std::int32_t slot;   ///< of the grid
+  float weight;        ///< in the rim, 0 to 1
+  float depth;         ///< metres below the rim
+  HoleZone zone;
+};
+
+/// A point as its beam has it, for following rings.
+struct RingPoint {
+  double azimuth, elevation;  ///< radians, azimuth about that of the hole
+  float range;                ///< horizontal, metres
+  float depth;                ///< metres below the rim
+  std::int32_t next;          ///< on the same ring, or -1
+  std::uint8_t state;         ///< rim, between, floor or other low ground
+  bool has_before;            ///< on the same ring
 };
 
 /// Scratch memory of `find_holes`.
@@ -60,20 +113,36 @@ struct HoleWorkspace {
   std::vector<float> height;            ///< per slot of the surface: low height above level 3
   std::vector<RimBase> base;            ///< per slot of the surface
   std::vector<std::uint8_t> candidate;  ///< per slot of the grid
+  std::vector<HoleZone> zone;           ///< per slot of the grid; kFar between holes
   std::vector<std::int32_t> members;    ///< slots of one hole
-  std::vector<std::uint8_t> in_hole;    ///< per slot of the grid: one of the members
+  std::vector<std::int32_t> deep, all;  ///< per slot: deep points and points, where looked at
   std::vector<HolePoint> points;        ///< in and around the members
-  std::vector<float> depths;            ///< of the points in the hole
+  std::vector<RingPoint> rings;         ///< the same points by azimuth
+  std::vector<float> values;            ///< for medians and the like
+  std::vector<std::uint8_t> stray;      ///< per point of the scan: its own beam speaks against it
 };
 
-/// Looks for holes. The height of the rim is the mean of the ground within about 1.2 m, which the
-/// ground reference, that goes down into holes, is compared with; ground that lies low does not
-/// count in it. Cells that lie below the rim, up to two cells apart, are a hole if they are deep,
-/// their walls are steep, and an even rim is seen on at least three sides: wide dips of rolling
-/// ground have no even rim, the foot of a low step has one on one side only.
+/// What holes are looked for in; all borrowed.
+struct HoleInput {
+  const FieldWorkspace& field;
+  const ElevationGrid& grid;
+  const BeamOrigins& origins;  ///< of the scan's points; may be unknown
+};
+
+/// Looks for holes whose floor is seen. First, low cells are taken back whose points are few, or
+/// reflections: their beams would have passed through ground that was seen.
+///
+/// The height of the rim is the mean of the ground within about 1.2 m, which the ground reference,
+/// that goes down into holes, is compared with; ground that lies low does not count in it. Cells
+/// that lie below the rim, up to two cells apart, are a hole if they lie deep below a surface
+/// through the ground around, if that surface is even, if what is seen around them is rim on all
+/// sides, and if their walls are steep: if the traces of the rings over the floor end abruptly at
+/// the rim, left and right. Wide dips of rolling ground end gradually, and the foot of a step has a
+/// rim on one side only.
 /// \param[in,out] cells `rim` is filled in
 /// \param[in,out] ground cells of holes become `GroundRule::kLow`
-void find_holes(const FieldWorkspace& field, const ElevationGrid& grid, const HoleParams& params,
-                HoleWorkspace& workspace, FieldCells& cells, GroundSegmentation& ground);
+/// \param[out] holes one entry per hole, in the order of their first cells
+void find_holes(const HoleInput& input, const HoleParams& params, HoleWorkspace& workspace,
+                FieldCells& cells, GroundSegmentation& ground, std::vector<HoleDescription>& holes);
 
 }  // namespace mrpt_terrain

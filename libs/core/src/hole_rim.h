@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "mrpt_terrain/core/holes.h"
+
+namespace mrpt_terrain {
+
+/// The ground around a hole as a surface of second order:
+/// z = z0 + g . (u, v) + c . (u^2, u v, v^2), u = x - x0, v = y - y0.
+struct RimSurface {
+  double x = 0.0, y = 0.0, z = 0.0;
+  double gradient_x = 0.0, gradient_y = 0.0;
+  double bend_xx = 0.0, bend_xy = 0.0, bend_yy = 0.0;  ///< per metre
+  double sigma = 0.0;  ///< standard deviation of the points that count, metres
+
+  [[nodiscard]] double height_at(double px, double py) const {
+    const double u = px - x, v = py - y;
+    return z + gradient_x * u + gradient_y * v + bend_xx * u * u + bend_xy * u * v +
+           bend_yy * v * v;
+  }
+};
+
+/// Fits the surface to the points around a hole (zones kRim and kNear) by weighted least squares,
+/// repeatedly without those that lie more than 2.5 standard deviations below it. Bending is held
+/// towards 0.
+/// \param low metres: points deeper than this never count
+/// \return false if there are fewer than eight points, or they do not span a plane
+[[nodiscard]] bool fit_rim(const std::vector<HolePoint>& points, double low, RimSurface& rim);
+
+}  // namespace mrpt_terrain

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "mrpt_terrain/core/elevation_grid.h"
+
+namespace mrpt_terrain {
+
+/// Calls f with every observed slot up to `reach` cells away from a slot, itself included.
+template <class F>
+void for_slots_around(const ElevationGrid& grid, std::size_t slot, int reach, F&& f) {
+  const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
+  for (int l = std::max(at.l - reach, 0); l <= std::min(at.l + reach, grid.geometry.cells_l() - 1);
+       ++l) {
+    for (int w = std::max(at.w - reach, 0);
+         w <= std::min(at.w + reach, grid.geometry.cells_w() - 1); ++w) {
+      const Slot other =
+          grid.slot_of[static_cast<std::size_t>(value_of(grid.geometry.id_of({l, w})))];
+      if (other != kUnobserved) f(static_cast<std::size_t>(other));
+    }
+  }
+}
+
+}  // namespace mrpt_terrain

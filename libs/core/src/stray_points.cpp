@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stray_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slots_around.h"
+
+namespace mrpt_terrain {
+namespace {
+
+// Low cells up to this many cells apart are looked at together.
+constexpr int kApart = 2;
+// Beams are followed back in steps of a cell of the reference, metres...
+constexpr float kStep = 0.4F;
+// ...from so far ahead of the point on, where an opening would be, up to so far.
+constexpr float kOpening = 0.6F, kFarthest = 60.0F;
+// ...until they are above the ground but for so much, metres.
+constexpr float kAboveGround = 0.05F;
+// Met so often, and at least at every second step, the ground speaks against a point.
+constexpr int kFewestCrossed = 3;
+
+bool is_stray(const HoleInput& input, const FieldCells& cells, const CellPoint& p) {
+  const auto& origin = input.origins.of(static_cast<std::size_t>(p.index));
+  const float dx = origin[0] - p.x, dy = origin[1] - p.y, dz = origin[2] - p.z;
+  const float range = std::hypot(dx, dy);
+  int crossed = 0, steps = 0;
+  for (float t = kOpening; t < std::min(range, kFarthest); t += kStep) {
+    const float share = t / range;
+    const float x = p.x + share * dx, y = p.y + share * dy;
+    if (p.z + share * dz > input.field.surface.height_at(x, y) - kAboveGround) break;
+    ++steps;
+    CellIndex cell;
+    if (!input.grid.geometry.cell_at(x, y, cell)) continue;
+    const Slot slot = input.grid.slot_at(cell);
+    if (slot != kUnobserved && cells.on[static_cast<std::size_t>(slot)] > 0) ++crossed;
+  }
+  return crossed >= kFewestCrossed && 2 * crossed >= steps;
+}
+
+/// Points below the ground in a group of cells.
+struct LowPoints {
+  int all = 0, stray = 0;
+};
+
+// Marks stray points; per slot, how many points below the ground there are, and how many are stray.
+void mark_stray(const HoleInput& input, const FieldCells& cells, HoleWorkspace& workspace) {
+  std::fill(workspace.deep.begin(), workspace.deep.end(), 0);
+  workspace.stray.assign(input.field.points.support.size(), 0);
+  if (!input.origins.known()) return;
+  const GroundSurface& surface = input.field.surface;
+  for (std::size_t k = 0; k < input.field.support.size(); ++k) {
+    if (input.field.support[k] != Support::kBelow) continue;
+    const CellPoint& p = surface.cells.points[k];
+    CellIndex cell;
+    if (!input.grid.geometry.cell_at(p.x, p.y, cell)) continue;
+    const Slot slot = input.grid.slot_at(cell);
+    if (slot == kUnobserved || !is_stray(input, cells, p)) continue;
+    workspace.stray[static_cast<std::size_t>(p.index)] = 1;
+    ++workspace.deep[static_cast<std::size_t>(slot)];
+  }
+}
+
+}  // namespace
+
+void take_back_stray_cells(const HoleInput& input, int least_points, const FieldCells& cells,
+                           HoleWorkspace& workspace, GroundSegmentation& ground) {
+  const std::size_t n = input.grid.observed();
+  workspace.deep.resize(n);
+  workspace.all.assign(n, 0);
+  mark_stray(input, cells, workspace);
+  for (std::size_t first = 0; first < n; ++first) {
+    if (ground.rule[first] != GroundRule::kLow || workspace.all[first] != 0) continue;
+    workspace.members.assign(1, static_cast<std::int32_t>(first));
+    workspace.all[first] = 1;
+    LowPoints points;
+    for (std::size_t next = 0; next < workspace.members.size(); ++next) {
+      const auto slot = static_cast<std::size_t>(workspace.members[next]);
+      points.all += cells.below[slot];
+      points.stray += workspace.deep[slot];
+      for_slots_around(input.grid, slot, kApart, [&](std::size_t near) {
+        if (ground.rule[near] != GroundRule::kLow || workspace.all[near] != 0) return;
+        workspace.all[near] = 1;
+        workspace.members.push_back(static_cast<std::int32_t>(near));
+      });
+    }
+    if (points.all >= least_points && 2 * points.stray < points.all) continue;
+    for (const std::int32_t slot : workspace.members)
+      ground.rule[static_cast<std::size_t>(slot)] = GroundRule::kGround;
+  }
+}
+
+}  // namespace mrpt_terrain
