@@ -86,6 +86,10 @@ CLI::App& add_worlds(CLI::App& app, WorldsOptions& options) {
   add_robot(command, options);
   command.add_option("--false-potholes", options.false_potholes, "List of all false potholes")
       ->type_name("FILE.csv");
+  command
+      .add_option("--things", options.things,
+                  "List of all true things and of clusters that are none")
+      ->type_name("FILE.csv");
   add_common(command, options.common);
   return command;
 }

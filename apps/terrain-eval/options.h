@@ -37,6 +37,7 @@ struct WorldsOptions {
   bool skewed = false;
   bool level = false;
   std::string false_potholes;  ///< CSV; empty: none
+  std::string things;          ///< CSV; empty: none
 };
 
 struct LabelledOptions {

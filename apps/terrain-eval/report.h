@@ -25,6 +25,8 @@ struct NamedScore {
 
 /// One line per false pothole.
 [[nodiscard]] std::string false_potholes_csv(const mrpt_terrain::eval::WorldScore& score);
+/// One line per true thing that counts and per cluster that is none.
+[[nodiscard]] std::string things_csv(const mrpt_terrain::eval::WorldScore& score);
 
 /// Support of labelled scans.
 struct NamedSupport {

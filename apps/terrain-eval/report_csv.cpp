@@ -139,3 +139,25 @@ std::string false_potholes_csv(const eval::WorldScore& score) {
   }
   return text;
 }
+
+std::string things_csv(const eval::WorldScore& score) {
+  std::string text =
+      "family,seed,sweep,what,object,type,class,cluster,described,x,y,of_object,of_cluster,shared,"
+      "iou,called_ground,in_no_cluster,parts,swallowed\n";
+  for (const eval::ThingRecord& entry : score.things) {
+    text += entry.family + "," + std::to_string(entry.seed) + "," + std::to_string(entry.sweep) +
+            (entry.is_false ? ",cluster," : ",object,") + std::to_string(entry.thing) + "," +
+            entry.type + "," + name_of(entry.truth) + "," + std::to_string(entry.cluster) + "," +
+            name_of(entry.described) + "," + view::fixed(entry.x, 2) + "," +
+            view::fixed(entry.y, 2);
+    for (const std::size_t n : {entry.of_thing, entry.of_cluster, entry.shared}) {
+      text += "," + std::to_string(n);
+    }
+    text += "," + view::fixed(entry.iou(), 3);
+    for (const std::size_t n : {entry.loose, entry.dropped, entry.parts, entry.swallowed}) {
+      text += "," + std::to_string(n);
+    }
+    text += "\n";
+  }
+  return text;
+}

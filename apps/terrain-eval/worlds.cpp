@@ -162,7 +162,8 @@ class WorldQueue {
       listener = [&folder](const eval::ScoredScan& scored) { dump_scan(folder, scored); };
     }
     return eval::score_world({plan_.families[family], seed, options_.scans, options_.approach,
-                              plan_.scans, plan_.rules, describe, listener});
+                              !options_.things.empty(), plan_.scans, plan_.rules, describe,
+                              listener});
   }
 
   const Plan& plan_;
@@ -217,6 +218,7 @@ void report(const std::vector<NamedScore>& scores, const WorldsOptions& options,
   messages.info(text);
   write(options.common.csv, world_csv(scores));
   write(options.false_potholes, false_potholes_csv(scores.back().score));
+  write(options.things, things_csv(scores.back().score));
 }
 
 }  // namespace

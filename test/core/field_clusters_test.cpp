@@ -19,7 +19,8 @@ namespace {
 using Rows = std::vector<std::string>;
 
 /// Cells of 1 m from a drawing: '#' above the ground, 'v' below it, '.' ground, ' ' unobserved.
-/// '#' reaches from 0.1 m to 1 m, 'T' is a roof from 2 m to 3 m. One point each.
+/// '#' reaches from 0.1 m to 1 m, 'T' is a roof from 2 m to 3 m, 'r' is ground raised by 0.1 m with
+/// a sharp edge. One point each.
 struct Cells {
   ElevationGrid grid;
   GroundSegmentation ground;
@@ -29,21 +30,28 @@ Cells drawn(const Rows& rows) {
   Cells result;
   Rows marks = rows;
   for (std::string& row : marks) {
-    for (char& mark : row) mark = mark == ' ' || mark == '.' ? mark : '#';
+    for (char& mark : row) mark = mark == ' ' ? ' ' : mark == '.' || mark == 'r' ? '.' : '#';
   }
   grids::Drawing drawing = grids::drawing(marks);
   result.grid = std::move(drawing.grid);
   result.ground = std::move(drawing.ground);
   const std::size_t n = result.grid.observed();
   FieldCells& field = result.field;
-  for (auto* values : {&field.ground, &field.low, &field.high, &field.floor, &field.rim})
+  for (auto* values : {&field.ground, &field.low, &field.high, &field.floor, &field.rim,
+                       &field.raised_low, &field.raised_high})
     values->assign(n, 0.0F);
-  for (auto* counts : {&field.on, &field.above, &field.below}) counts->assign(n, 0);
+  for (auto* counts : {&field.on, &field.above, &field.below, &field.raised}) counts->assign(n, 0);
+  for (auto* counts : {&field.sharp_edges, &field.smooth_edges}) counts->assign(n, 0);
   field.deck.assign(n, -1);
   for (std::size_t slot = 0; slot < n; ++slot) {
     const CellIndex at = result.grid.geometry.index_of(result.grid.cell[slot]);
     const char mark = rows[static_cast<std::size_t>(at.l)][static_cast<std::size_t>(at.w)];
-    if (mark == '.') field.on[slot] = 1;
+    if (mark == '.' || mark == 'r') field.on[slot] = 1;
+    if (mark == 'r') {
+      field.raised[slot] = 1;
+      field.raised_low[slot] = field.raised_high[slot] = 0.1F;
+      field.sharp_edges[slot] = 1;
+    }
     if (mark == 'v') {
       result.ground.rule[slot] = GroundRule::kLow;
       field.below[slot] = 1;
@@ -65,6 +73,8 @@ FieldClusterParams touching() {
   params.link = 0.0;
   params.link_growth = 0.0;
   params.step = 0.3;
+  params.flat = 1e9;
+  params.unseen = 0.0;
   return params;
 }
 FieldClusterParams linked(double link, double growth = 0.0) {
@@ -87,7 +97,7 @@ Rows numbered(const Rows& rows, const FieldClusterParams& params) {
   const Clusters clusters = clustered(cells, params);
   Rows result = rows;
   for (std::size_t slot = 0; slot < cells.grid.observed(); ++slot) {
-    if (cells.ground.is_ground(slot)) continue;
+    if (cells.ground.is_ground(slot) && cells.field.raised[slot] == 0) continue;
     const CellIndex at = cells.grid.geometry.index_of(cells.grid.cell[slot]);
     const std::int32_t k = clusters.cluster_of[slot];
     result[static_cast<std::size_t>(at.l)][static_cast<std::size_t>(at.w)] =
@@ -164,6 +174,59 @@ TEST(FieldClusters, AGapInHeightKeepsACanopyOffAWall) {
   // And the other way round: the order of the cells does not matter.
   EXPECT_EQ(numbered({"T#T#"}, touching()), (Rows{"0123"}));
   EXPECT_EQ(numbered({"T#T#"}, linked(1.0)), (Rows{"0101"})) << "past each other";
+}
+
+// Upright surfaces are seen without gaps: posts beside each other are two things.
+TEST(FieldClusters, OnlyFlatCellsAreLinkedAcrossGaps) {
+  FieldClusterParams params = linked(1.0);
+  params.flat = 0.89;  // '#' extends over 0.9 m
+  EXPECT_EQ(numbered({"#.#"}, params), (Rows{"0.1"}));
+  EXPECT_EQ(numbered({"##"}, params), (Rows{"00"}));
+  EXPECT_EQ(numbered({"r.r"}, params), (Rows{"0.0"}));
+  params.flat = 0.91;
+  EXPECT_EQ(numbered({"#.#"}, params), (Rows{"0.0"}));
+}
+
+TEST(FieldClusters, RaisedGroundIsOneThingWithWhatStandsBesideIt) {
+  EXPECT_EQ(numbered({"rr#.r"}, touching()), (Rows{"000.1"}));
+  EXPECT_EQ(numbered({"rT"}, touching()), (Rows{"01"})) << "1.9 m apart in height";
+  EXPECT_EQ(numbered({"rvr"}, touching()), (Rows{"012"}));
+}
+
+// Two rings meet a curb far apart: as long as no ground was seen between, it goes on there.
+TEST(FieldClusters, RaisedGroundGoesOnWhereNothingWasSeen) {
+  FieldClusterParams params = touching();
+  params.unseen = 4.0;
+  EXPECT_EQ(numbered({"r   r"}, params), (Rows{"0   0"}));
+  EXPECT_EQ(numbered({"r    r"}, params), (Rows{"0    1"})) << "five cells away";
+  EXPECT_EQ(numbered({"r . r"}, params), (Rows{"0 . 1"})) << "ground was seen between";
+  EXPECT_EQ(numbered({"#   #"}, params), (Rows{"0   1"})) << "not of upright things";
+  EXPECT_EQ(numbered({"r  ", "   ", "  r"}, params), (Rows{"0  ", "   ", "  0"}));
+  Cells cells = drawn({"r   r"});
+  cells.field.raised_low[1] = cells.field.raised_high[1] = 0.151F;
+  EXPECT_EQ(clustered(cells, params).size(), 2U) << "of another height";
+  cells.field.raised_low[1] = cells.field.raised_high[1] = 0.149F;
+  EXPECT_EQ(clustered(cells, params).size(), 1U);
+}
+
+// What rises smoothly out of the ground is ground, whatever a few of its edges look like; what
+// stands on it makes it a thing.
+TEST(FieldClusters, SwellsOfTheGroundAreDropped) {
+  FieldClusterParams params = touching();
+  params.sharp = 0.3;
+  Cells cells = drawn({"rrr.#"});
+  for (std::size_t slot = 0; slot < 3; ++slot) {
+    cells.field.sharp_edges[slot] = 2;
+    cells.field.smooth_edges[slot] = 5;
+  }
+  EXPECT_EQ(clustered(cells, params).size(), 1U);
+  EXPECT_EQ(clustered(cells, params).dropped, 1U);
+  EXPECT_EQ(clustered(cells, params).cluster_of[0], kNoCluster);
+  cells.field.smooth_edges[0] = 3;  // 6 of 19
+  EXPECT_EQ(clustered(cells, params).size(), 2U);
+  cells.field.smooth_edges[0] = 100;
+  cells.field.above[2] = 1;
+  EXPECT_EQ(clustered(cells, params).size(), 2U);
 }
 
 // A hole has no height above the ground, whatever hangs over some of its cells.

@@ -11,9 +11,9 @@ namespace {
 
 // Whether a point is one of those that the cluster of its cell consists of: what stands out of the
 // ground, or in a hole the floor.
-bool belongs(Support support, GroundRule rule) {
+bool belongs(Support support, GroundRule rule, float raised) {
   return rule == GroundRule::kLow ? support == Support::kGround || support == Support::kBelow
-                                  : support == Support::kAbove;
+                                  : support == Support::kAbove || raised > 0.0F;
 }
 
 void find_cluster_slots(const DescriptionWorkspace& workspace, const GroundSegmentation& ground,
@@ -24,7 +24,8 @@ void find_cluster_slots(const DescriptionWorkspace& workspace, const GroundSegme
   for (std::size_t i = 0; i < point_slots.size(); ++i) {
     const std::int32_t slot = point_slots[i];
     const bool member = slot >= 0 && workspace.holes.stray[i] == 0 &&
-                        belongs(points.support[i], ground.rule[static_cast<std::size_t>(slot)]);
+                        belongs(points.support[i], ground.rule[static_cast<std::size_t>(slot)],
+                                workspace.raised_ground.height[i]);
     cluster_slots[i] = member ? slot : point_slot_of(UnknownReason::kNone);
   }
 }
@@ -56,7 +57,9 @@ void measure_things(const StageInput& stage, DescriptionWorkspace& workspace,
     sums.points.add(points.x[i], points.y[i], points.z[i]);
     const auto cell = static_cast<std::size_t>(slot);
     const bool hole = description.ground.rule[cell] == GroundRule::kLow;
-    const float height = hole ? points.z[i] - description.field.rim[cell] : field.height[i];
+    const float height =
+        hole ? points.z[i] - description.field.rim[cell]
+             : std::max(field.height[i], workspace.raised_ground.height[i]);
     sums.height += height;
     sums.low = std::min(sums.low, height);
     sums.high = std::max(sums.high, height);
@@ -134,6 +137,9 @@ void describe_field(const ScanView& scan, const DescriptionParams& params,
              description.field, description.ground, description.holes);
   find_decks(scan, workspace.field.points, workspace.point_slots, description.grid,
              description.ground, params.decks, workspace.decks, description.field);
+  find_raised_ground(scan.points, workspace.field, description.grid, description.ground,
+                     workspace.point_slots, params.raised_ground, workspace.raised_ground,
+                     description.field);
   done(Stage::kGrid);
   find_field_clusters(description.grid, description.ground, description.field,
                       params.field_clusters, workspace.field_clusters, description.clusters);

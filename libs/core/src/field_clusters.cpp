@@ -34,13 +34,33 @@ struct Linker {
   const GroundSegmentation& ground;
   const FieldCells& cells;
   float step;
+  float flat;
 
-  [[nodiscard]] bool compatible(std::size_t a, std::size_t b) const {
-    if (ground.rule[a] != ground.rule[b] || cells.deck[a] != cells.deck[b]) return false;
-    // What is over a hole is no part of it.
-    if (ground.rule[a] == GroundRule::kLow) return true;
-    const float gap = std::max(cells.low[a], cells.low[b]) - std::min(cells.high[a], cells.high[b]);
-    return gap <= step;
+  [[nodiscard]] bool is_member(std::size_t slot) const {
+    return !ground.is_ground(slot) || cells.raised[slot] > 0;
+  }
+  [[nodiscard]] float low(std::size_t slot) const {
+    if (cells.raised[slot] == 0) return cells.low[slot];
+    return cells.above[slot] == 0 ? cells.raised_low[slot]
+                                  : std::min(cells.low[slot], cells.raised_low[slot]);
+  }
+  [[nodiscard]] float high(std::size_t slot) const {
+    return std::max(cells.high[slot], cells.raised_high[slot]);
+  }
+  [[nodiscard]] bool is_hole(std::size_t slot) const {
+    return ground.rule[slot] == GroundRule::kLow;
+  }
+  [[nodiscard]] bool same_deck(std::size_t a, std::size_t b) const {
+    return cells.deck[a] == cells.deck[b] || (cells.above[a] == 0 && cells.deck[a] < 0) ||
+           (cells.above[b] == 0 && cells.deck[b] < 0);
+  }
+  [[nodiscard]] bool compatible(std::size_t a, std::size_t b, bool touching) const {
+    if (is_hole(a) || is_hole(b)) return is_hole(a) && is_hole(b);
+    if (!same_deck(a, b)) return false;
+    const float low_a = low(a), low_b = low(b), high_a = high(a), high_b = high(b);
+    if (std::max(low_a, low_b) - std::min(high_a, high_b) > step) return false;
+    // Upright surfaces have no gaps; what lies flat is seen by a ring here and one there.
+    return touching || (high_a - low_a <= flat && high_b - low_b <= flat);
   }
 };
 
@@ -61,28 +81,85 @@ void link_back(const Linker& linker, std::size_t slot, int reach,
     const int last = l == at.l ? at.w - 1 : std::min(at.w + reach, geometry.cells_w() - 1);
     for (int w = std::max(at.w - reach, 0); w <= last; ++w) {
       const Slot other = slots[w];
-      if (other == kUnobserved || linker.ground.is_ground(static_cast<std::size_t>(other)))
-        continue;
-      if (linker.compatible(slot, static_cast<std::size_t>(other)))
+      if (other == kUnobserved || !linker.is_member(static_cast<std::size_t>(other))) continue;
+      const bool touching = at.l - l <= 1 && std::abs(at.w - w) <= 1;
+      if (linker.compatible(slot, static_cast<std::size_t>(other), touching))
         unite(parent, static_cast<std::int32_t>(slot), other);
     }
   }
 }
 
-void count_members(const GroundSegmentation& ground, const FieldCells& cells,
-                   FieldClusterWorkspace& workspace) {
+/// Links cells of raised ground with nothing but unseen cells between them: a curb or a ramp that
+/// two rings meet far apart.
+class UnseenLinker {
+ public:
+  UnseenLinker(const Linker& linker, const FieldClusterParams& params)
+      : linker_(linker),
+        level_(static_cast<float>(params.level)),
+        reach_(static_cast<int>(params.unseen / linker.grid.geometry.cell_size())) {}
+
+  void link_back(std::size_t slot, std::vector<std::int32_t>& parent) const {
+    if (!is_raised_only(slot)) return;
+    const GridGeometry& geometry = linker_.grid.geometry;
+    const CellIndex at = geometry.index_of(linker_.grid.cell[slot]);
+    for (int l = std::max(at.l - reach_, 0); l <= at.l; ++l) {
+      const Slot* slots = linker_.grid.slot_of.data() + value_of(geometry.id_of({l, 0}));
+      const int last = l == at.l ? at.w - 1 : std::min(at.w + reach_, geometry.cells_w() - 1);
+      for (int w = std::max(at.w - reach_, 0); w <= last; ++w) {
+        const Slot other = slots[w];
+        if (other == kUnobserved || !is_raised_only(static_cast<std::size_t>(other))) continue;
+        if (!as_high(slot, static_cast<std::size_t>(other)) || !is_unseen(at, {l, w})) continue;
+        unite(parent, static_cast<std::int32_t>(slot), other);
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] bool is_raised_only(std::size_t slot) const {
+    return linker_.ground.is_ground(slot) && linker_.cells.raised[slot] > 0;
+  }
+  [[nodiscard]] bool as_high(std::size_t a, std::size_t b) const {
+    const float sum_a = linker_.low(a) + linker_.high(a), sum_b = linker_.low(b) + linker_.high(b);
+    return 0.5F * std::abs(sum_a - sum_b) <= level_;
+  }
+  // Whether no cell between the two was observed but for cells of things.
+  [[nodiscard]] bool is_unseen(CellIndex a, CellIndex b) const {
+    const int steps = std::max(std::abs(a.l - b.l), std::abs(a.w - b.w));
+    for (int k = 1; k < steps; ++k) {
+      const double share = static_cast<double>(k) / steps;
+      const CellIndex at{a.l + static_cast<int>(std::lround(share * (b.l - a.l))),
+                         a.w + static_cast<int>(std::lround(share * (b.w - a.w)))};
+      const Slot slot = linker_.grid.slot_at(at);
+      if (slot != kUnobserved && !linker_.is_member(static_cast<std::size_t>(slot))) return false;
+    }
+    return true;
+  }
+
+  const Linker& linker_;
+  float level_;
+  int reach_;
+};
+
+void count_members(const Linker& linker, FieldClusterWorkspace& workspace) {
+  const GroundSegmentation& ground = linker.ground;
+  const FieldCells& cells = linker.cells;
   const std::size_t n = cells.size();
   workspace.cells_of.assign(n, 0);
-  workspace.points_of.assign(n, 0);
+  for (auto* counts : {&workspace.points_of, &workspace.sharp_of, &workspace.smooth_of,
+                       &workspace.above_of})
+    counts->assign(n, 0);
   for (std::size_t slot = 0; slot < n; ++slot) {
-    if (ground.is_ground(slot)) continue;
+    if (!linker.is_member(slot)) continue;
     workspace.parent[slot] = root_of(workspace.parent, static_cast<std::int32_t>(slot));
     const auto root = static_cast<std::size_t>(workspace.parent[slot]);
     ++workspace.cells_of[root];
+    workspace.above_of[root] += linker.is_hole(slot) ? 1 : cells.above[slot];
+    workspace.sharp_of[root] += cells.sharp_edges[slot];
+    workspace.smooth_of[root] += cells.smooth_edges[slot];
     // The floor of a hole is ground.
     workspace.points_of[root] += ground.rule[slot] == GroundRule::kLow
                                      ? cells.on[slot] + cells.below[slot]
-                                     : cells.above[slot];
+                                     : cells.above[slot] + cells.raised[slot];
   }
 }
 
@@ -94,7 +171,10 @@ void number_things(const FieldClusterParams& params, FieldClusterWorkspace& work
   for (std::size_t root = 0; root < workspace.cells_of.size(); ++root) {
     const std::int32_t cells = workspace.cells_of[root];
     if (cells == 0) continue;
-    if (cells < params.t_c && workspace.points_of[root] < params.t_points) {
+    const std::int32_t edges = workspace.sharp_of[root] + workspace.smooth_of[root];
+    const bool swell = 5 * workspace.above_of[root] < workspace.points_of[root] &&
+                       workspace.sharp_of[root] < params.sharp * edges;
+    if (swell || (cells < params.t_c && workspace.points_of[root] < params.t_points)) {
       ++result.dropped;
       continue;
     }
@@ -109,21 +189,24 @@ void number_things(const FieldClusterParams& params, FieldClusterWorkspace& work
 void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& ground,
                          const FieldCells& cells, const FieldClusterParams& params,
                          FieldClusterWorkspace& workspace, Clusters& result) {
-  const Linker linker{grid, ground, cells, static_cast<float>(params.step)};
+  const Linker linker{grid, ground, cells, static_cast<float>(params.step),
+                      static_cast<float>(params.flat)};
   const std::size_t n = grid.observed();
   workspace.parent.resize(n);
   for (std::size_t slot = 0; slot < n; ++slot) {
     workspace.parent[slot] = static_cast<std::int32_t>(slot);
-    if (ground.is_ground(slot)) continue;
+    if (!linker.is_member(slot)) continue;
     link_back(linker, slot, reach_of(grid, params, grid.geometry.index_of(grid.cell[slot])),
               workspace.parent);
   }
-  count_members(ground, cells, workspace);
+  const UnseenLinker unseen(linker, params);
+  for (std::size_t slot = 0; slot < n; ++slot) unseen.link_back(slot, workspace.parent);
+  count_members(linker, workspace);
   number_things(params, workspace, result);
   result.cluster_of.assign(n, kNoCluster);
   workspace.points_of.assign(result.slots.first.begin(), result.slots.first.end());
   for (std::size_t slot = 0; slot < n; ++slot) {
-    if (ground.is_ground(slot)) continue;
+    if (!linker.is_member(slot)) continue;
     const std::int32_t cluster =
         workspace.number_of[static_cast<std::size_t>(workspace.parent[slot])];
     if (cluster == kNoCluster) continue;

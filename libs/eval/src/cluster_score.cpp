@@ -203,4 +203,101 @@ void add_clusters(const ClusterMatching& matching, const ScanTruth& truth,
   }
 }
 
+namespace {
+
+/// Place and labels of a thing's counted points.
+struct ThingPoints {
+  double x = 0.0, y = 0.0;
+  std::size_t counted = 0, loose = 0, dropped = 0;
+};
+
+std::vector<ThingPoints> look_at_things(const PointsView& points, const ScanTruth& truth,
+                                        const PointLabels& labels) {
+  std::vector<ThingPoints> result(truth.things.size());
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (!is_counted(truth, i)) continue;
+    ThingPoints& thing = result[index(truth.thing[i])];
+    ++thing.counted;
+    thing.x += static_cast<double>(points.x[i]);
+    thing.y += static_cast<double>(points.y[i]);
+    if (labels.cluster[i] != kNoCluster) continue;
+    ++(labels.support[i] == Support::kGround ? thing.loose : thing.dropped);
+  }
+  return result;
+}
+
+void add_truth(const ScanTruth& truth, std::int32_t thing, const std::vector<ThingPoints>& all,
+               ThingRecord& record) {
+  const ThingPoints& of_thing = all[index(thing)];
+  const double n = std::max<double>(1.0, static_cast<double>(of_thing.counted));
+  record.thing = truth.things[index(thing)].id;
+  record.type = truth.things[index(thing)].type;
+  record.truth = truth.things[index(thing)].terrain_class;
+  record.x = of_thing.x / n;
+  record.y = of_thing.y / n;
+  record.of_thing = of_thing.counted;
+  record.loose = of_thing.loose;
+  record.dropped = of_thing.dropped;
+}
+
+/// Of the overlaps that `wanted` accepts, the one with the most points; null: none.
+template <class Wanted>
+const Overlap* largest(const std::vector<Overlap>& overlaps, Wanted&& wanted) {
+  const Overlap* best = nullptr;
+  for (const Overlap& overlap : overlaps) {
+    if (wanted(overlap) && (best == nullptr || overlap.points > best->points)) best = &overlap;
+  }
+  return best;
+}
+
+}  // namespace
+
+double ThingRecord::iou() const {
+  const std::size_t all = of_thing + of_cluster - shared;
+  return all == 0 ? 0.0 : static_cast<double>(shared) / static_cast<double>(all);
+}
+
+std::vector<ThingRecord> list_things(const PointsView& points, const ScanTruth& truth,
+                                     const PointLabels& labels,
+                                     const std::vector<ClusterDescription>& clusters,
+                                     const ClusterMatching& matching) {
+  const Sizes sizes = measure(points, truth, labels, clusters);
+  const std::vector<ThingPoints> of_things = look_at_things(points, truth, labels);
+  std::vector<ThingRecord> records;
+  const auto add = [&](const Overlap* overlap, ThingRecord record) {
+    if (overlap != nullptr) {
+      record.shared = overlap->points;
+      record.cluster = overlap->cluster;
+    }
+    if (record.cluster != kNoCluster) {
+      record.described = clusters[index(record.cluster)].terrain_class;
+      record.of_cluster = sizes.cluster[index(record.cluster)].counted;
+      record.swallowed = matching.swallowed[index(record.cluster)];
+    }
+    records.push_back(std::move(record));
+  };
+  for (const MatchedThing& thing : matching.things) {
+    ThingRecord record;
+    add_truth(truth, thing.thing, of_things, record);
+    record.parts = thing.parts;
+    add(largest(sizes.overlaps,
+                [&thing](const Overlap& overlap) {
+                  return overlap.thing == thing.thing &&
+                         (thing.cluster == kNoCluster || overlap.cluster == thing.cluster);
+                }),
+        std::move(record));
+  }
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    if (matching.fate[c] != ClusterFate::kFalse) continue;
+    const Overlap* overlap = largest(
+        sizes.overlaps, [c](const Overlap& each) { return index(each.cluster) == c; });
+    ThingRecord record;
+    record.is_false = true;
+    record.cluster = static_cast<std::int32_t>(c);
+    if (overlap != nullptr) add_truth(truth, overlap->thing, of_things, record);
+    add(overlap, std::move(record));
+  }
+  return records;
+}
+
 }  // namespace mrpt_terrain::eval

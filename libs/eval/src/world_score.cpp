@@ -42,6 +42,15 @@ void score_scan(const WorldTask& task, const DrivenWorld& world, std::size_t swe
     wrong.sweep = sweep;
     score.potholes.wrong.push_back(std::move(wrong));
   }
+  if (task.list_things) {
+    for (ThingRecord& record :
+         list_things(points, scan.truth, description.labels, description.things, matching)) {
+      record.family = world.family;
+      record.seed = world.seed;
+      record.sweep = sweep;
+      score.things.push_back(std::move(record));
+    }
+  }
   if (task.listener) task.listener({world, sweep, scan, description, matching});
 }
 
@@ -81,6 +90,7 @@ void WorldScore::add(const WorldScore& other) {
   clusters.add(other.clusters);
   slopes.add(other.slopes);
   potholes.add(other.potholes);
+  things.insert(things.end(), other.things.begin(), other.things.end());
 }
 
 WorldScore score_world(const WorldTask& task) {

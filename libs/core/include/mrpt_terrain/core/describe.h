@@ -20,6 +20,7 @@
 #include "mrpt_terrain/core/holes.h"
 #include "mrpt_terrain/core/label_stage.h"
 #include "mrpt_terrain/core/labels.h"
+#include "mrpt_terrain/core/raised_ground.h"
 #include "mrpt_terrain/core/roughness.h"
 #include "mrpt_terrain/core/scan_view.h"
 #include "mrpt_terrain/core/slope.h"
@@ -56,6 +57,7 @@ struct DescriptionParams {
   GroundLabelParams ground_labels;
   HoleParams holes;
   DeckParams decks;
+  RaisedGroundParams raised_ground;
   FieldClusterParams field_clusters;
   GroundParams ground;
   ClusterParams clusters;
@@ -72,6 +74,7 @@ struct DescriptionParams {
     visit(self.ground_labels, "ground_labels", "Field mode: points of the ground and above it");
     visit(self.holes, "holes", "Field mode: potholes and ditches");
     visit(self.decks, "decks", "Field mode: raised surfaces to drive on");
+    visit(self.raised_ground, "raised_ground", "Field mode: ground that is part of a thing");
     visit(self.field_clusters, "field_clusters", "Field mode: clusters that are things");
     visit(self.ground, "ground", "Ground segmentation, eqs. (1) and (2)");
     visit(self.clusters, "clusters", "Grids clustering");
@@ -156,6 +159,7 @@ struct DescriptionWorkspace {
   FieldWorkspace field;
   HoleWorkspace holes;
   DeckWorkspace decks;
+  RaisedGroundWorkspace raised_ground;
   FieldClusterWorkspace field_clusters;
   ClusterWorkspace clusters;
   SlopeWorkspace slope;

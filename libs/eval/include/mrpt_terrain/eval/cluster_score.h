@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "mrpt_terrain/core/describe.h"
@@ -54,6 +55,29 @@ struct ClusterMatching {
 
 inline constexpr std::size_t kClassCount = 5;
 
+/// A true thing that counts beside the cluster that shares the most points with it, or a cluster
+/// that is no thing beside the thing with which it shares the most.
+struct ThingRecord {
+  std::string family;
+  std::uint64_t seed = 0;
+  std::size_t sweep = 0;
+  bool is_false = false;             ///< a cluster that is no thing
+  std::int32_t thing = kNoThing;     ///< number of the solid; kNoThing: ground or nothing
+  std::string type;                  ///< of the solid; "": none
+  TerrainClass truth = TerrainClass::kNone;
+  std::int32_t cluster = kNoCluster;
+  TerrainClass described = TerrainClass::kNone;
+  double x = 0.0, y = 0.0;           ///< mean of the counted points, frame of the description
+  std::size_t of_thing = 0;          ///< counted points
+  std::size_t of_cluster = 0;
+  std::size_t shared = 0;
+  std::size_t loose = 0;             ///< of the thing: in no cluster and called ground
+  std::size_t dropped = 0;           ///< of the thing: in no cluster and not called ground
+  std::size_t parts = 0;             ///< MatchedThing::parts
+  std::size_t swallowed = 0;         ///< ClusterMatching::swallowed of the cluster
+  [[nodiscard]] double iou() const;
+};
+
 struct ClusterScore {
   Share found;                  ///< things: matched of all, the recall
   Share right;                  ///< clusters: matched of all that count, the precision
@@ -70,5 +94,12 @@ struct ClusterScore {
 
 void add_clusters(const ClusterMatching& matching, const ScanTruth& truth,
                   const std::vector<ClusterDescription>& clusters, ClusterScore& score);
+
+/// All things that count and all clusters that are none, in this order. Family, seed and sweep are
+/// left to the caller.
+[[nodiscard]] std::vector<ThingRecord> list_things(const PointsView& points, const ScanTruth& truth,
+                                                   const PointLabels& labels,
+                                                   const std::vector<ClusterDescription>& clusters,
+                                                   const ClusterMatching& matching);
 
 }  // namespace mrpt_terrain::eval

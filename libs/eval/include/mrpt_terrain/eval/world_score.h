@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 #include "mrpt_terrain/eval/cluster_score.h"
 #include "mrpt_terrain/eval/pothole_score.h"
@@ -21,6 +22,7 @@ struct WorldScore {
   ClusterScore clusters;
   SlopeScore slopes;
   PotholeScore potholes;
+  std::vector<ThingRecord> things;  ///< if `WorldTask::list_things`
   void add(const WorldScore& other);
 };
 
@@ -49,6 +51,7 @@ struct WorldTask {
   std::uint64_t seed = 0;
   std::size_t scans = 8;  ///< spread evenly over the drive
   bool approach = false;  ///< also look at the approach to holes on the path
+  bool list_things = false;  ///< fill in WorldScore::things
   const ScanOptions& options;
   const ScoreRules& rules;
   const Describe& describe;

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/core/raised_ground.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "surface_levels.h"
+
+namespace mrpt_terrain {
+namespace {
+
+// The first guess is this level of the reference, cells of 6.4 m.
+constexpr int kGuessLevel = 4;
+// Steps of asymmetric least squares, with the distance above the plane from which points count
+// less; then steps of Tukey's biweight.
+constexpr float kCauchyScales[] = {0.4F, 0.2F, 0.1F, 0.05F, 0.03F};
+constexpr float kBelow = 30.0F;
+constexpr int kTukeySteps = 5;
+constexpr float kTukeyLimit = 4.0F;  // standard deviations
+constexpr float kFirstSigma = 0.015F;
+// The guess of the gradient counts like so many samples 1 m away.
+constexpr double kPrior = 0.5;
+// An edge is looked for within so many cells; ground beside it lies at most so high, as a share of
+// the raised cell's height.
+constexpr int kEdgeReach = 2;
+constexpr float kSharp = 0.5F;
+// Fewer samples, or fewer that count, are no plane.
+constexpr std::size_t kFewestSamples = 8;
+constexpr double kLeastShare = 0.25;
+
+struct Blocks {
+  const GridGeometry& geometry;
+  int cells;  ///< along a side of a block
+  int rows, columns;
+
+  Blocks(const GridGeometry& of, double side)
+      : geometry(of),
+        cells(std::max(1, static_cast<int>(std::lround(side / of.cell_size())))),
+        rows((of.cells_l() + cells - 1) / cells),
+        columns((of.cells_w() + cells - 1) / cells) {}
+  [[nodiscard]] std::size_t size() const {
+    return static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
+  }
+  [[nodiscard]] std::size_t at(int row, int column) const {
+    return static_cast<std::size_t>(row * columns + column);
+  }
+  [[nodiscard]] std::size_t of(CellIndex cell) const {
+    return at(cell.l / cells, cell.w / cells);
+  }
+};
+
+void sum_ground(const PointsView& points, const FieldPoints& field, const PointSlots& point_slots,
+                std::size_t slots, std::vector<RaisedGroundWorkspace::Sums>& sums) {
+  sums.assign(slots, {});
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (point_slots[i] < 0 || field.support[i] != Support::kGround) continue;
+    RaisedGroundWorkspace::Sums& to = sums[static_cast<std::size_t>(point_slots[i])];
+    to.x += points.x[i];
+    to.y += points.y[i];
+    to.z += points.z[i];
+    to.n += 1.0F;
+  }
+}
+
+// Counting sort of the cells' mean points.
+void sort_samples(const ElevationGrid& grid, const GroundSegmentation& ground, const Blocks& blocks,
+                  RaisedGroundWorkspace& workspace) {
+  const auto is_sample = [&](std::size_t slot) {
+    return workspace.sums[slot].n > 0.0F && ground.rule[slot] != GroundRule::kLow;
+  };
+  workspace.first.assign(blocks.size() + 1, 0);
+  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
+    if (is_sample(slot)) ++workspace.first[blocks.of(grid.geometry.index_of(grid.cell[slot])) + 1];
+  }
+  for (std::size_t b = 1; b < workspace.first.size(); ++b)
+    workspace.first[b] += workspace.first[b - 1];
+  workspace.samples.resize(static_cast<std::size_t>(workspace.first.back()));
+  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
+    if (!is_sample(slot)) continue;
+    const RaisedGroundWorkspace::Sums& from = workspace.sums[slot];
+    std::int32_t& next = workspace.first[blocks.of(grid.geometry.index_of(grid.cell[slot]))];
+    workspace.samples[static_cast<std::size_t>(next++)] = {from.x / from.n, from.y / from.n,
+                                                           from.z / from.n};
+  }
+  for (std::size_t b = workspace.first.size() - 1; b > 0; --b)
+    workspace.first[b] = workspace.first[b - 1];
+  workspace.first[0] = 0;
+}
+
+void collect_window(const Blocks& blocks, int row, int column, RaisedGroundWorkspace& workspace) {
+  workspace.window.clear();
+  for (int i = std::max(row - 1, 0); i <= std::min(row + 1, blocks.rows - 1); ++i) {
+    // The blocks of a row lie one behind the other.
+    const std::size_t from = blocks.at(i, std::max(column - 1, 0));
+    const std::size_t to = blocks.at(i, std::min(column + 1, blocks.columns - 1)) + 1;
+    workspace.window.insert(workspace.window.end(),
+                            workspace.samples.begin() + workspace.first[from],
+                            workspace.samples.begin() + workspace.first[to]);
+  }
+}
+
+/// Weighted least squares of the plane with the prior on its gradient.
+struct PlaneSystem {
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  double weights = 0.0, squares = 0.0;
+
+  void add(float u, float v, float z, float weight, float residual) {
+    const Eigen::Vector3d row(1.0, u, v);
+    matrix += double{weight} * row * row.transpose();
+    right += double{weight} * double{z} * row;
+    weights += weight;
+    squares += double{weight} * residual * residual;
+  }
+};
+
+template <class Weight>
+PlaneSystem step(const std::vector<GroundSample>& samples, const Eigen::Vector2d& gradient,
+                 GroundAround& plane, Weight&& weight) {
+  PlaneSystem system;
+  for (const GroundSample& sample : samples) {
+    const float residual = sample.z - plane.height_at(sample.x, sample.y);
+    const float w = weight(residual);
+    if (w > 0.0F) {
+      system.add(sample.x - plane.centre_x, sample.y - plane.centre_y, sample.z - plane.height, w,
+                 residual);
+    }
+  }
+  if (system.weights <= 0.0) return system;
+  system.matrix.bottomRightCorner<2, 2>() += kPrior * Eigen::Matrix2d::Identity();
+  system.right.tail<2>() += kPrior * gradient;
+  const Eigen::Vector3d solution = system.matrix.inverse() * system.right;
+  plane.height += static_cast<float>(solution[0]);
+  plane.gradient_x = static_cast<float>(solution[1]);
+  plane.gradient_y = static_cast<float>(solution[2]);
+  return system;
+}
+
+void fit_plane(const std::vector<GroundSample>& samples, const RaisedGroundParams& params,
+               GroundAround& plane) {
+  const Eigen::Vector2d gradient(plane.gradient_x, plane.gradient_y);
+  for (const float scale : kCauchyScales) {
+    step(samples, gradient, plane, [scale](float r) {
+      return r < 0.0F ? kBelow : 1.0F / (1.0F + r * r / (scale * scale));
+    });
+  }
+  const auto least = static_cast<float>(params.sigma_min);
+  plane.sigma = std::max(kFirstSigma, least);
+  PlaneSystem system;
+  for (int k = 0; k < kTukeySteps; ++k) {
+    const float limit = kTukeyLimit * plane.sigma;
+    system = step(samples, gradient, plane, [limit](float r) {
+      const float share = 1.0F - r * r / (limit * limit);
+      return share > 0.0F ? share * share : 0.0F;
+    });
+    if (system.weights < kLeastShare * static_cast<double>(samples.size())) return;
+    plane.sigma =
+        std::max(static_cast<float>(std::sqrt(system.squares / system.weights)) * 1.1F, least);
+  }
+  if (plane.sigma > static_cast<float>(params.sigma_max)) return;
+  const Eigen::Matrix3d spread = system.matrix.inverse();
+  int k = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) plane.spread[k++] = static_cast<float>(spread(i, j));
+  }
+  plane.known = true;
+}
+
+void fit_planes(const FieldWorkspace& field, const Blocks& blocks, const RaisedGroundParams& params,
+                RaisedGroundWorkspace& workspace) {
+  const LevelView guess =
+      view_of_level(field.surface_workspace, field.surface.lattice(), kGuessLevel);
+  workspace.around.assign(blocks.size(), {});
+  for (int row = 0; row < blocks.rows; ++row) {
+    for (int column = 0; column < blocks.columns; ++column) {
+      const std::size_t at = blocks.at(row, column);
+      if (workspace.first[at] == workspace.first[at + 1]) continue;
+      collect_window(blocks, row, column, workspace);
+      if (workspace.window.size() < kFewestSamples) continue;
+      const int half = blocks.cells / 2;
+      const Position2 centre = blocks.geometry.centre_of(
+          {std::min(row * blocks.cells + half, blocks.geometry.cells_l() - 1),
+           std::min(column * blocks.cells + half, blocks.geometry.cells_w() - 1)});
+      GroundAround& plane = workspace.around[at];
+      plane.centre_x = static_cast<float>(centre.x);
+      plane.centre_y = static_cast<float>(centre.y);
+      const LevelView::Linear first = guess.at(plane.centre_x, plane.centre_y);
+      plane.height = first.height;
+      plane.gradient_x = first.gradient_x;
+      plane.gradient_y = first.gradient_y;
+      fit_plane(workspace.window, params, plane);
+    }
+  }
+}
+
+// Looks in four directions for the first observed cell within two cells.
+void look_at_edges(const ElevationGrid& grid, const GroundSegmentation& ground, const Blocks& blocks,
+                   const RaisedGroundWorkspace& workspace, FieldCells& cells) {
+  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
+    if (cells.raised[slot] == 0) continue;
+    const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
+    const GroundAround& plane = workspace.around[blocks.of(at)];
+    const float height = 0.5F * (cells.raised_low[slot] + cells.raised_high[slot]);
+    for (const CellIndex direction :
+         {CellIndex{1, 0}, CellIndex{-1, 0}, CellIndex{0, 1}, CellIndex{0, -1}}) {
+      Slot other = kUnobserved;
+      for (int k = 1; k <= kEdgeReach && other == kUnobserved; ++k)
+        other = grid.slot_at({at.l + k * direction.l, at.w + k * direction.w});
+      if (other == kUnobserved) continue;
+      const auto o = static_cast<std::size_t>(other);
+      const RaisedGroundWorkspace::Sums& sums = workspace.sums[o];
+      if (!ground.is_ground(o) || cells.raised[o] > 0 || sums.n == 0.0F) continue;
+      const float beside =
+          (sums.z / sums.n) - plane.height_at(sums.x / sums.n, sums.y / sums.n);
+      ++(beside < kSharp * height ? cells.sharp_edges : cells.smooth_edges)[slot];
+    }
+  }
+}
+
+}  // namespace
+
+void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
+                        const ElevationGrid& grid, const GroundSegmentation& ground,
+                        const PointSlots& point_slots, const RaisedGroundParams& params,
+                        RaisedGroundWorkspace& workspace, FieldCells& cells) {
+  const std::size_t n = grid.observed();
+  cells.raised.assign(n, 0);
+  cells.raised_low.assign(n, 0.0F);
+  cells.raised_high.assign(n, 0.0F);
+  cells.sharp_edges.assign(n, 0);
+  cells.smooth_edges.assign(n, 0);
+  workspace.height.assign(points.size, 0.0F);
+  if (field.surface.height.empty()) return;
+  const Blocks blocks(grid.geometry, params.block);
+  sum_ground(points, field.points, point_slots, n, workspace.sums);
+  sort_samples(grid, ground, blocks, workspace);
+  fit_planes(field, blocks, params, workspace);
+  const auto least = static_cast<float>(params.least_height);
+  const auto sigmas = static_cast<float>(params.sigmas);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (point_slots[i] < 0 || field.points.support[i] != Support::kGround) continue;
+    const auto slot = static_cast<std::size_t>(point_slots[i]);
+    if (ground.rule[slot] == GroundRule::kLow) continue;
+    const GroundAround& plane =
+        workspace.around[blocks.of(grid.geometry.index_of(grid.cell[slot]))];
+    if (!plane.known) continue;
+    const float height = points.z[i] - plane.height_at(points.x[i], points.y[i]);
+    if (height < least) continue;
+    const float sigma =
+        plane.sigma * std::sqrt(1.0F + plane.leverage_at(points.x[i], points.y[i]));
+    if (height < least + sigmas * sigma) continue;
+    workspace.height[i] = height;
+    cells.raised_low[slot] =
+        cells.raised[slot] == 0 ? height : std::min(cells.raised_low[slot], height);
+    cells.raised_high[slot] = std::max(cells.raised_high[slot], height);
+    ++cells.raised[slot];
+  }
+  look_at_edges(grid, ground, blocks, workspace, cells);
+}
+
+}  // namespace mrpt_terrain
