@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mrpt_terrain/core/raised_ground.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
+#include "lanes.h"
 #include "surface_levels.h"
+#include "wide_registers.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -45,9 +47,7 @@ struct Blocks {
   [[nodiscard]] std::size_t at(int row, int column) const {
     return static_cast<std::size_t>(row * columns + column);
   }
-  [[nodiscard]] std::size_t of(CellIndex cell) const {
-    return at(cell.l / cells, cell.w / cells);
-  }
+  [[nodiscard]] std::size_t of(CellIndex cell) const { return at(cell.l / cells, cell.w / cells); }
 };
 
 void sum_ground(const PointsView& points, const FieldPoints& field, const PointSlots& point_slots,
@@ -88,82 +88,157 @@ void sort_samples(const ElevationGrid& grid, const GroundSegmentation& ground, c
   workspace.first[0] = 0;
 }
 
-void collect_window(const Blocks& blocks, int row, int column, RaisedGroundWorkspace& workspace) {
-  workspace.window.clear();
+// Samples of three by three blocks about the plane's centre, and one of no weight for every lane
+// that is left over.
+void collect_window(const Blocks& blocks, int row, int column, const GroundAround& plane,
+                    RaisedGroundWorkspace& workspace) {
+  GroundWindow& window = workspace.window;
+  window.clear();
   for (int i = std::max(row - 1, 0); i <= std::min(row + 1, blocks.rows - 1); ++i) {
     // The blocks of a row lie one behind the other.
     const std::size_t from = blocks.at(i, std::max(column - 1, 0));
     const std::size_t to = blocks.at(i, std::min(column + 1, blocks.columns - 1)) + 1;
-    workspace.window.insert(workspace.window.end(),
-                            workspace.samples.begin() + workspace.first[from],
-                            workspace.samples.begin() + workspace.first[to]);
+    for (std::int32_t k = workspace.first[from]; k < workspace.first[to]; ++k) {
+      const GroundSample& sample = workspace.samples[static_cast<std::size_t>(k)];
+      window.add(sample.x - plane.centre_x, sample.y - plane.centre_y, sample.z, 1.0F);
+    }
   }
+  window.samples = window.u.size();
+  while (window.u.size() % kCellLanes != 0) window.add(0.0F, 0.0F, plane.height, 0.0F);
 }
 
-/// Weighted least squares of the plane with the prior on its gradient.
-struct PlaneSystem {
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  double weights = 0.0, squares = 0.0;
+/// Weighted sums for a plane, about its present height.
+struct PlaneSums {
+  float w = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0, z = 0, uz = 0, vz = 0, squares = 0;
+};
 
-  void add(float u, float v, float z, float weight, float residual) {
-    const Eigen::Vector3d row(1.0, u, v);
-    matrix += double{weight} * row * row.transpose();
-    right += double{weight} * double{z} * row;
-    weights += weight;
-    squares += double{weight} * residual * residual;
+struct PlaneLanes {
+  FloatLanes w = {}, u = {}, v = {}, uu = {}, uv = {}, vv = {}, z = {}, uz = {}, vz = {};
+  FloatLanes squares = {};
+};
+
+MRPT_TERRAIN_LANES void load_samples(const GroundWindow& window, std::size_t i,
+                                     const GroundAround& plane, FloatLanes& u, FloatLanes& v,
+                                     FloatLanes& z, FloatLanes& use, FloatLanes& residual) {
+  load_from(window.u.data() + i, u);
+  load_from(window.v.data() + i, v);
+  load_from(window.z.data() + i, z);
+  load_from(window.use.data() + i, use);
+  z = z - plane.height;
+  residual = z - plane.gradient_x * u - plane.gradient_y * v;
+}
+
+MRPT_TERRAIN_LANES void add_samples(const FloatLanes& w, const FloatLanes& u, const FloatLanes& v,
+                                    const FloatLanes& z, const FloatLanes& residual,
+                                    PlaneLanes& sums) {
+  const FloatLanes wu = w * u, wv = w * v;
+  sums.w += w;
+  sums.u += wu;
+  sums.v += wv;
+  sums.uu += wu * u;
+  sums.uv += wu * v;
+  sums.vv += wv * v;
+  sums.z += w * z;
+  sums.uz += wu * z;
+  sums.vz += wv * z;
+  sums.squares += w * residual * residual;
+}
+
+MRPT_TERRAIN_LANES float total(const FloatLanes& lanes) {
+  float value[kCellLanes];
+  std::memcpy(value, &lanes, sizeof(value));
+  float sum = 0.0F;
+  for (const float lane : value) sum += lane;
+  return sum;
+}
+
+MRPT_TERRAIN_LANES void add_up(const PlaneLanes& lanes, PlaneSums& sums) {
+  sums = {total(lanes.w),  total(lanes.u), total(lanes.v),  total(lanes.uu), total(lanes.uv),
+          total(lanes.vv), total(lanes.z), total(lanes.uz), total(lanes.vz), total(lanes.squares)};
+}
+
+// Asymmetric least squares: what lies far above counts little, what lies below kBelow times.
+MRPT_TERRAIN_WIDE_REGISTERS
+void sum_asymmetric(const GroundWindow& window, const GroundAround& plane, float scale,
+                    PlaneSums& sums) {
+  PlaneLanes lanes;
+  const float share = 1.0F / (scale * scale);
+  for (std::size_t i = 0; i < window.u.size(); i += kCellLanes) {
+    FloatLanes u, v, z, use, residual;
+    load_samples(window, i, plane, u, v, z, use, residual);
+    const FloatLanes above = 1.0F / (1.0F + share * residual * residual);
+    const FloatLanes below = use * 0.0F + kBelow;
+    const FloatLanes w = use * (residual < 0.0F ? below : above);
+    add_samples(w, u, v, z, residual, lanes);
+  }
+  add_up(lanes, sums);
+}
+
+// Tukey's biweight.
+MRPT_TERRAIN_WIDE_REGISTERS
+void sum_biweight(const GroundWindow& window, const GroundAround& plane, float limit,
+                  PlaneSums& sums) {
+  PlaneLanes lanes;
+  const float per_square = 1.0F / (limit * limit);
+  for (std::size_t i = 0; i < window.u.size(); i += kCellLanes) {
+    FloatLanes u, v, z, use, residual;
+    load_samples(window, i, plane, u, v, z, use, residual);
+    const FloatLanes share = 1.0F - per_square * residual * residual;
+    const FloatLanes none = use * 0.0F;
+    const FloatLanes w = use * (share > 0.0F ? share * share : none);
+    add_samples(w, u, v, z, residual, lanes);
+  }
+  add_up(lanes, sums);
+}
+
+/// Symmetric 3 x 3 matrix: rows of the upper triangle.
+struct Symmetric3 {
+  double xx, xy, xz, yy, yz, zz;
+
+  [[nodiscard]] Symmetric3 inverse() const {
+    const double a = yy * zz - yz * yz, b = xz * yz - xy * zz, c = xy * yz - xz * yy;
+    const double scale = 1.0 / (xx * a + xy * b + xz * c);
+    return {a * scale,
+            b * scale,
+            c * scale,
+            (xx * zz - xz * xz) * scale,
+            (xy * xz - xx * yz) * scale,
+            (xx * yy - xy * xy) * scale};
   }
 };
 
-template <class Weight>
-PlaneSystem step(const std::vector<GroundSample>& samples, const Eigen::Vector2d& gradient,
-                 GroundAround& plane, Weight&& weight) {
-  PlaneSystem system;
-  for (const GroundSample& sample : samples) {
-    const float residual = sample.z - plane.height_at(sample.x, sample.y);
-    const float w = weight(residual);
-    if (w > 0.0F) {
-      system.add(sample.x - plane.centre_x, sample.y - plane.centre_y, sample.z - plane.height, w,
-                 residual);
-    }
-  }
-  if (system.weights <= 0.0) return system;
-  system.matrix.bottomRightCorner<2, 2>() += kPrior * Eigen::Matrix2d::Identity();
-  system.right.tail<2>() += kPrior * gradient;
-  const Eigen::Vector3d solution = system.matrix.inverse() * system.right;
-  plane.height += static_cast<float>(solution[0]);
-  plane.gradient_x = static_cast<float>(solution[1]);
-  plane.gradient_y = static_cast<float>(solution[2]);
-  return system;
+// One step of least squares, the gradient held to that of the guess.
+// \return covariance of height and gradient over the variance of a sample
+Symmetric3 take_step(const PlaneSums& s, float guess_x, float guess_y, GroundAround& plane) {
+  const Symmetric3 inverse =
+      Symmetric3{s.w, s.u, s.v, s.uu + kPrior, s.uv, s.vv + kPrior}.inverse();
+  const double z = s.z, x = s.uz + kPrior * guess_x, y = s.vz + kPrior * guess_y;
+  plane.height += static_cast<float>(inverse.xx * z + inverse.xy * x + inverse.xz * y);
+  plane.gradient_x = static_cast<float>(inverse.xy * z + inverse.yy * x + inverse.yz * y);
+  plane.gradient_y = static_cast<float>(inverse.xz * z + inverse.yz * x + inverse.zz * y);
+  return inverse;
 }
 
-void fit_plane(const std::vector<GroundSample>& samples, const RaisedGroundParams& params,
-               GroundAround& plane) {
-  const Eigen::Vector2d gradient(plane.gradient_x, plane.gradient_y);
+void fit_plane(const GroundWindow& window, const RaisedGroundParams& params, GroundAround& plane) {
+  const float guess_x = plane.gradient_x, guess_y = plane.gradient_y;
+  PlaneSums sums;
   for (const float scale : kCauchyScales) {
-    step(samples, gradient, plane, [scale](float r) {
-      return r < 0.0F ? kBelow : 1.0F / (1.0F + r * r / (scale * scale));
-    });
+    sum_asymmetric(window, plane, scale, sums);
+    take_step(sums, guess_x, guess_y, plane);
   }
   const auto least = static_cast<float>(params.sigma_min);
   plane.sigma = std::max(kFirstSigma, least);
-  PlaneSystem system;
+  Symmetric3 spread{};
   for (int k = 0; k < kTukeySteps; ++k) {
-    const float limit = kTukeyLimit * plane.sigma;
-    system = step(samples, gradient, plane, [limit](float r) {
-      const float share = 1.0F - r * r / (limit * limit);
-      return share > 0.0F ? share * share : 0.0F;
-    });
-    if (system.weights < kLeastShare * static_cast<double>(samples.size())) return;
-    plane.sigma =
-        std::max(static_cast<float>(std::sqrt(system.squares / system.weights)) * 1.1F, least);
+    sum_biweight(window, plane, kTukeyLimit * plane.sigma, sums);
+    if (sums.w < kLeastShare * static_cast<double>(window.samples)) return;
+    spread = take_step(sums, guess_x, guess_y, plane);
+    plane.sigma = std::max(std::sqrt(sums.squares / sums.w) * 1.1F, least);
   }
   if (plane.sigma > static_cast<float>(params.sigma_max)) return;
-  const Eigen::Matrix3d spread = system.matrix.inverse();
   int k = 0;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = i; j < 3; ++j) plane.spread[k++] = static_cast<float>(spread(i, j));
-  }
+  for (const double value : {spread.xx, spread.xy, spread.xz, spread.yy, spread.yz, spread.zz})
+    plane.spread[k++] = static_cast<float>(value);
   plane.known = true;
 }
 
@@ -176,8 +251,6 @@ void fit_planes(const FieldWorkspace& field, const Blocks& blocks, const RaisedG
     for (int column = 0; column < blocks.columns; ++column) {
       const std::size_t at = blocks.at(row, column);
       if (workspace.first[at] == workspace.first[at + 1]) continue;
-      collect_window(blocks, row, column, workspace);
-      if (workspace.window.size() < kFewestSamples) continue;
       const int half = blocks.cells / 2;
       const Position2 centre = blocks.geometry.centre_of(
           {std::min(row * blocks.cells + half, blocks.geometry.cells_l() - 1),
@@ -189,14 +262,16 @@ void fit_planes(const FieldWorkspace& field, const Blocks& blocks, const RaisedG
       plane.height = first.height;
       plane.gradient_x = first.gradient_x;
       plane.gradient_y = first.gradient_y;
-      fit_plane(workspace.window, params, plane);
+      collect_window(blocks, row, column, plane, workspace);
+      if (workspace.window.samples >= kFewestSamples) fit_plane(workspace.window, params, plane);
     }
   }
 }
 
 // Looks in four directions for the first observed cell within two cells.
-void look_at_edges(const ElevationGrid& grid, const GroundSegmentation& ground, const Blocks& blocks,
-                   const RaisedGroundWorkspace& workspace, FieldCells& cells) {
+void look_at_edges(const ElevationGrid& grid, const GroundSegmentation& ground,
+                   const Blocks& blocks, const RaisedGroundWorkspace& workspace,
+                   FieldCells& cells) {
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
     if (cells.raised[slot] == 0) continue;
     const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
@@ -211,8 +286,7 @@ void look_at_edges(const ElevationGrid& grid, const GroundSegmentation& ground, 
       const auto o = static_cast<std::size_t>(other);
       const RaisedGroundWorkspace::Sums& sums = workspace.sums[o];
       if (!ground.is_ground(o) || cells.raised[o] > 0 || sums.n == 0.0F) continue;
-      const float beside =
-          (sums.z / sums.n) - plane.height_at(sums.x / sums.n, sums.y / sums.n);
+      const float beside = (sums.z / sums.n) - plane.height_at(sums.x / sums.n, sums.y / sums.n);
       ++(beside < kSharp * height ? cells.sharp_edges : cells.smooth_edges)[slot];
     }
   }
@@ -247,8 +321,7 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
     if (!plane.known) continue;
     const float height = points.z[i] - plane.height_at(points.x[i], points.y[i]);
     if (height < least) continue;
-    const float sigma =
-        plane.sigma * std::sqrt(1.0F + plane.leverage_at(points.x[i], points.y[i]));
+    const float sigma = plane.sigma * std::sqrt(1.0F + plane.leverage_at(points.x[i], points.y[i]));
     if (height < least + sigmas * sigma) continue;
     workspace.height[i] = height;
     cells.raised_low[slot] =

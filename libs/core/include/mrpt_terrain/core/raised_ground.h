@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -60,16 +61,34 @@ struct GroundSample {
   float x = 0.0F, y = 0.0F, z = 0.0F;
 };
 
+/// Samples that a plane is fitted to, about its centre in x and y; a multiple of the lanes that are
+/// worked on side by side.
+struct GroundWindow {
+  std::vector<float> u, v, z;  ///< metres
+  std::vector<float> use;      ///< 1, and 0 where the samples end
+  std::size_t samples = 0;
+
+  void clear() {
+    for (auto* values : {&u, &v, &z, &use}) values->clear();
+  }
+  void add(float pu, float pv, float pz, float weight) {
+    u.push_back(pu);
+    v.push_back(pv);
+    z.push_back(pz);
+    use.push_back(weight);
+  }
+};
+
 /// Scratch memory of `find_raised_ground`, and what later stages need of it.
 struct RaisedGroundWorkspace {
   struct Sums {
     float x = 0.0F, y = 0.0F, z = 0.0F, n = 0.0F;
   };
-  std::vector<Sums> sums;              ///< per slot: of its points on the ground
-  std::vector<std::int32_t> first;     ///< per block: of its samples; one more at the end
-  std::vector<GroundSample> samples;   ///< by block
-  std::vector<GroundSample> window;    ///< of one plane
-  std::vector<GroundAround> around;    ///< per block
+  std::vector<Sums> sums;             ///< per slot: of its points on the ground
+  std::vector<std::int32_t> first;    ///< per block: of its samples; one more at the end
+  std::vector<GroundSample> samples;  ///< by block
+  GroundWindow window;                ///< of one plane
+  std::vector<GroundAround> around;   ///< per block
   /// Per point: how far a raised point of the ground stands above the ground around, metres; 0 for
   /// all others.
   std::vector<float> height;
