@@ -72,7 +72,8 @@ struct Fan {
 /// from its own surface changes with x, with y and with the heading (per 5 m of arm). 0.01 is one
 /// return in a hundred that squarely faces the weakest direction. Returns of vegetation fix
 /// nothing.
-double structure_of(const SimDrive& drive, double time) {
+/// \param map if given: only returns from where it knows something fix anything
+double structure_of(const SimDrive& drive, double time, const CTerrainMap* map = nullptr) {
   const Eigen::Isometry3d T_map_robot = drive.motion.at(time);
   const auto fan = [&](double turn, double lift) {
     Fan result{rays_of(drive, T_map_robot * drive.sensor.T_robot_sensor, turn, lift), {}};
@@ -90,6 +91,8 @@ double structure_of(const SimDrive& drive, double time) {
     if (seen.solid[k] == sim::kNoSolid) continue;
     ++returns;
     if (seen.solid[k] != solid) continue;
+    const Eigen::Vector3d end = middle.end(k);
+    if (map != nullptr && map->cell_at(end.x(), end.y()).status != PlaceStatus::kKnown) continue;
     if (turned.hits.solid[k] != solid || lifted.hits.solid[k] != solid) continue;
     const Eigen::Vector3d normal =
         (turned.end(k) - middle.end(k)).cross(lifted.end(k) - middle.end(k)).normalized();
@@ -170,7 +173,7 @@ Offset search(const CTerrainMap& map, const mrpt::obs::CObservation& observation
 }
 
 struct Outcome {
-  double structure = 0.0;
+  double structure = 0.0, in_common = 0.0;  ///< that of all returns, and where the last scan was
   Offset scan, rolling;
 };
 
@@ -199,6 +202,7 @@ Outcome judge(const std::string& family, std::uint64_t seed) {
   const Eigen::Isometry3d truth = drive.motion.at(time);
   Outcome outcome;
   outcome.structure = structure_of(drive, time);
+  outcome.in_common = structure_of(drive, time, &single);
   outcome.rolling = search(rolling, observation, truth, seed);
   outcome.scan = search(single, observation, truth, seed);
   return outcome;
@@ -235,10 +239,10 @@ TEST(LikelihoodWorlds, IsGreatestNearTheTruthWhereTheWorldFixesThePose) {
       const Outcome outcome = judge(family, seed);
       (outcome.structure >= kEnoughStructure ? enough : little).add(outcome);
       std::printf(
-          "%s %d: structure %.4f, rolling (%.3f, %.3f) m %.2f deg, single (%.3f, %.3f) m "
+          "%s %d: structure %.4f (%.4f), rolling (%.3f, %.3f) m %.2f deg, single (%.3f, %.3f) m "
           "%.2f deg\n",
-          family.c_str(), k, outcome.structure, outcome.rolling.x, outcome.rolling.y,
-          outcome.rolling.turn / kDegree, outcome.scan.x, outcome.scan.y,
+          family.c_str(), k, outcome.structure, outcome.in_common, outcome.rolling.x,
+          outcome.rolling.y, outcome.rolling.turn / kDegree, outcome.scan.x, outcome.scan.y,
           outcome.scan.turn / kDegree);
     }
     print(family.c_str(), enough);

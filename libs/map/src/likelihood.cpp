@@ -13,6 +13,8 @@ namespace {
 constexpr double kFlat = 0.04;
 // ... which rises less than this.
 constexpr double kSteepest = 1.0;
+// What `unknown_share` says counts as much as this share of a scan's points.
+constexpr double kPriorWeight = 0.02;
 // Points that are not spread farther than this, metres, say nothing about a slope.
 constexpr double kLeastSpread = 0.02;
 
@@ -165,15 +167,28 @@ double log_likelihood(const LikelihoodField& field, const PointsView& points,
   const Eigen::Isometry3d T_window_robot = field.snapshot->T_map_window.inverse() * T_map_robot;
   const CellDistance distance(field, params);
   const double worst = params.max_distance * params.max_distance;
-  double sum = 0.0;
+  double known = 0.0;  // sum of squares where something is known
+  int judged = 0, unknown = 0;
   for (std::size_t k = 0; k < points.size; ++k) {
     const Eigen::Vector3f point(points.x[k], points.y[k], points.z[k]);
     const Eigen::Vector3d p = T_window_robot * point.cast<double>();
     if (!p.allFinite()) continue;
     const double square = distance.square(p);
-    sum += square < 0.0 ? params.unknown_share * worst : std::min(square, worst);
+    ++judged;
+    if (square < 0.0) {
+      ++unknown;
+    } else {
+      known += std::min(square, worst);
+    }
   }
-  return -0.5 * sum / (params.sigma * params.sigma);
+  if (judged == 0) return 0.0;
+  // Which points fall where nothing is known says how the rings of the two scans lie, not how the
+  // terrain does. Such a point costs what the others cost on average, so that it is neither worth
+  // while nor harmful to move one there. Where hardly anything is known the prior takes over.
+  const double prior = kPriorWeight * judged;
+  const double average =
+      (known + prior * params.unknown_share * worst) / (judged - unknown + prior);
+  return -0.5 * (known + unknown * average) / (params.sigma * params.sigma);
 }
 
 }  // namespace mrpt_terrain

@@ -74,10 +74,12 @@ struct OctreeInsertParams {
 
 /// `[..._likelihoodOpts]`: how well a scan fits the map at a pose.
 struct MapLikelihoodParams {
-  int decimation = 10;          ///< every n-th point counts
-  double sigma = 0.1;           ///< metres: of the distance between a point and the map
-  double max_distance = 0.3;    ///< metres: farther away, all distances count the same
-  double unknown_share = 0.25;  ///< of the greatest penalty, for points where nothing is known
+  int decimation = 10;        ///< every n-th point counts
+  double sigma = 0.1;         ///< metres: of the distance between a point and the map
+  double max_distance = 0.3;  ///< metres: farther away, all distances count the same
+  /// Points where nothing is known are penalised as the scan's other points are on average; as far
+  /// as there are hardly any others, with this share of the greatest penalty.
+  double unknown_share = 0.25;
 
   template <class Self, class Visitor>
   static void visit_params(Self& self, Visitor&& visit) {
@@ -89,7 +91,8 @@ struct MapLikelihoodParams {
                                        "points farther from the map all count the same"});
     visit(self.unknown_share,
           ParamInfo{"unknown_share", "", "", 0.0, 1.0,
-                    "share of the greatest penalty for points where the map knows nothing"});
+                    "share of the greatest penalty for points where the map knows nothing, if it "
+                    "knows next to nothing of the others, too; else the average of those"});
   }
 };
 
