@@ -479,6 +479,12 @@ HoleDescription describe_hole(const HoleCase& hole, const HoleCounts& counts,
   result.depth = hole.depth;
   result.points = counts.floor;
   result.rings = rings.rings;
+  const double walled =
+      hole.input.origins.known()
+          ? std::min(1.0, static_cast<double>(rings.walled) / std::max(counts.floor, 1))
+          : hole.params.walled;
+  const double even = 1.0 - hole.rim.sigma / hole.depth;
+  result.confidence = hole.closed * hole.seen * walled * std::max(even, 0.0);
   result.slot = *std::min_element(hole.workspace.members.begin(), hole.workspace.members.end());
   double x = 0.0, y = 0.0, n = 0.0;
   for (const HolePoint& p : hole.workspace.points) {
