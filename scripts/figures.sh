@@ -78,10 +78,12 @@ modes() {
     "PNG8:$images/$name.png"
 }
 
-# curve CSV METRIC: "bin share count" of a family's potholes, a line per bin of distance.
+# curve CSV METRIC: "number bin share count" for each bin of distance with at least ten potholes.
 curve() {
-  awk -F, -v metric="$2" '$1 == "pooled" && $2 == metric && $5 > 0 { print $3 "," 100 * $4 "," $5 }' "$1" |
-    sed 's/ m,/,/'
+  awk -F, -v metric="$2" '$1 == "pooled" && $2 == metric {
+    if ($5 >= 10) print number + 0 "," $3 "," 100 * $4 "," $5
+    ++number
+  }' "$1" | sed 's/ m,/,/'
 }
 
 # detection NAME: shares of potholes that are found in a scan, by distance and by sensor, as NAME.png.
@@ -108,9 +110,9 @@ set xtics rotate by -45
 set xlabel "distance in m"
 set ylabel "found in a single scan, %"
 set title "all of 0.3 to 1 m width, 5 to 20 cm depth"
-plot for [s in "vlp16 hdl32e hdl64e"] "$work/".s.".all" using 0:2:xtic(1) title s
+plot for [s in "vlp16 hdl32e hdl64e"] "$work/".s.".all" using 1:3:xtic(2) title s
 set title "of these, those with 10 deep returns of 2 rings"
-plot for [s in "vlp16 hdl32e hdl64e"] "$work/".s.".due" using 0:2:xtic(1) title s
+plot for [s in "vlp16 hdl32e hdl64e"] "$work/".s.".due" using 1:3:xtic(2) title s
 unset multiplot
 TEXT
 }
