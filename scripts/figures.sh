@@ -11,8 +11,9 @@ usage() {
 usage: scripts/figures.sh [FOLDER]
 
 Writes the pictures in doc/images: of the VLP-16 scan that Debian's mrpt-common brings along, of a
-small made-up world, of two simulated ones in paper mode and field mode side by side, and the plan of a
-scene. Builds terrain-rawlog and terrain-sim first, or uses those in FOLDER if it is given.
+small made-up world, of two simulated ones in paper mode and field mode side by side, the plan of a
+scene, and how many potholes are found over the distance. Builds terrain-rawlog, terrain-sim and
+terrain-eval first, or uses those in FOLDER if it is given.
 TEXT
 }
 
@@ -77,13 +78,52 @@ modes() {
     "PNG8:$images/$name.png"
 }
 
+# curve CSV METRIC: "number bin share count" for each bin of distance with at least ten potholes.
+curve() {
+  awk -F, -v metric="$2" '$1 == "pooled" && $2 == metric {
+    if ($5 >= 10) print number + 0 "," $3 "," 100 * $4 "," $5
+    ++number
+  }' "$1" | sed 's/ m,/,/'
+}
+
+# detection NAME: shares of potholes that are found in a scan, by distance and by sensor, as NAME.png.
+detection() {
+  local name="$1" sensor
+  for sensor in vlp16 hdl32e hdl64e; do
+    say "$name: $sensor"
+    "$programs/terrain-eval" worlds --families potholes --seeds 0:20 -j 2 --sensor "$sensor" \
+      --sensor-z 0.81 -c "$project_folder/params/field.ini" --csv "$work/$sensor.csv" >/dev/null
+    curve "$work/$sensor.csv" pothole_recall_due >"$work/$sensor.due"
+    curve "$work/$sensor.csv" pothole_recall_right_size >"$work/$sensor.all"
+  done
+  gnuplot <<TEXT
+set terminal pngcairo size 900,420
+set output "$images/$name.png"
+set datafile separator ","
+set style data linespoints
+set multiplot layout 1,2
+set yrange [0:105]
+set xrange [-0.5:8.5]
+set grid
+set key bottom left
+set xtics rotate by -45
+set xlabel "distance in m"
+set ylabel "found in a single scan, %"
+set title "all of 0.3 to 1 m width, 5 to 20 cm depth"
+plot for [s in "vlp16 hdl32e hdl64e"] "$work/".s.".all" using 1:3:xtic(2) title s
+set title "of these, those with 10 deep returns of 2 rings"
+plot for [s in "vlp16 hdl32e hdl64e"] "$work/".s.".due" using 1:3:xtic(2) title s
+unset multiplot
+TEXT
+}
+
 main() {
   case "${1:-}" in -h | --help) usage; return ;; esac
   local programs="${1:-}"
   if [[ -z "$programs" ]]; then
     install_packages packages.apt
     configure release
-    build release terrain-rawlog terrain-sim
+    build release terrain-rawlog terrain-sim terrain-eval
     programs="$project_folder/build/release/bin"
   fi
   program="$programs/terrain-rawlog"
@@ -102,6 +142,7 @@ main() {
   picture made_up_world "$work/made_up_world.rawlog" -c "$project_folder/params/paper.ini"
   modes modes_hills_2 hills 2
   modes modes_mixed_4 mixed 4
+  detection pothole_distance
   "$programs/terrain-sim" "$project_folder/params/scenes/drive.yaml" --preview "$images/drive_plan.png"
 }
 

@@ -317,6 +317,8 @@ TEST(HolesInRings, APotholeIsFoundWithItsPlaceAndSize) {
     EXPECT_NEAR(hole.length, 0.8, 0.3) << from;
     EXPECT_NEAR(hole.depth, 0.1, 0.01) << from;
     EXPECT_GE(hole.rings, 1) << from;
+    EXPECT_GT(hole.confidence, 0.5) << from;
+    EXPECT_LE(hole.confidence, 1.0) << from;
     EXPECT_EQ(holes.stages.ground.rule[static_cast<std::size_t>(hole.slot)], GroundRule::kLow);
   }
 }

@@ -57,9 +57,8 @@ void measure_things(const StageInput& stage, DescriptionWorkspace& workspace,
     sums.points.add(points.x[i], points.y[i], points.z[i]);
     const auto cell = static_cast<std::size_t>(slot);
     const bool hole = description.ground.rule[cell] == GroundRule::kLow;
-    const float height =
-        hole ? points.z[i] - description.field.rim[cell]
-             : std::max(field.height[i], workspace.raised_ground.height[i]);
+    const float height = hole ? points.z[i] - description.field.rim[cell]
+                              : std::max(field.height[i], workspace.raised_ground.height[i]);
     sums.height += height;
     sums.low = std::min(sums.low, height);
     sums.high = std::max(sums.high, height);
@@ -88,7 +87,9 @@ void label_field_cells(const Description& description, const std::vector<Terrain
   label_cells(description.ground, description.clusters, class_of, result);
   for (std::size_t slot = 0; slot < result.support.size(); ++slot) {
     const bool floor = description.ground.rule[slot] == GroundRule::kLow;
-    if (floor || description.field.deck[slot] >= 0) result.support[slot] = Support::kGround;
+    const bool on_deck = description.field.deck[slot] >= 0;
+    if (floor || on_deck || description.field.under[slot] != 0)
+      result.support[slot] = Support::kGround;
   }
 }
 
@@ -140,6 +141,7 @@ void describe_field(const ScanView& scan, const DescriptionParams& params,
   find_raised_ground(scan.points, workspace.field, description.grid, description.ground,
                      workspace.point_slots, params.raised_ground, workspace.raised_ground,
                      description.field);
+  find_overhangs(description.grid, params.overhangs, description.field);
   done(Stage::kGrid);
   find_field_clusters(description.grid, description.ground, description.field,
                       params.field_clusters, workspace.field_clusters, description.clusters);

@@ -42,8 +42,11 @@ constexpr double kSurroundings = 1.2;
 constexpr double kSurfaceReach = 1.01;
 // Surroundings this much deeper or higher than the rim are none, over the depth.
 constexpr double kLowerAround = 0.5, kHigherAround = 0.5;
-// Of eight directions, in so many there is rim: on one side alone, it may be a step.
-constexpr int kFewestSides = 5;
+// There is rim in a direction if so many of the cells that look out there see it...
+constexpr double kSideShare = 0.3;
+// ...and of the four pairs of opposite directions, so many have it on both sides: rim on one side
+// alone may be a step.
+constexpr int kFewestOpposite = 2;
 // Walls: traces of at least so many points on average, and so many points in all.
 constexpr double kLeastTrace = 1.5;
 constexpr int kLeastWalled = 4;
@@ -187,7 +190,7 @@ struct HoleCase {
   HoleWorkspace& workspace;
   RimSurface rim;
   double depth = 0.0;
-  unsigned sides = 0;   // of the eight directions, those in which rim is seen
+  unsigned sides = 0;   // bit per direction (row by row): rim is seen there
   double closed = 0.0;  // share of rim in what is seen around
   double seen = 0.0;    // share of what is seen around
 
@@ -389,38 +392,38 @@ Surrounding look_out(const HoleCase& hole, CellIndex at, int step_l, int step_w)
   return Surrounding::kUnseen;
 }
 
-int bits_of(unsigned bits) {
-  int count = 0;
-  for (; bits != 0; bits &= bits - 1U) ++count;
-  return count;
+// Of the four pairs of opposite directions, those in which rim is seen on both sides.
+int opposite_sides(unsigned sides) {
+  int pairs = 0;
+  for (unsigned direction = 0; direction < 4; ++direction) {
+    const unsigned both = 1U << direction | 1U << (8U - direction);
+    pairs += (sides & both) == both ? 1 : 0;
+  }
+  return pairs;
 }
 
 void look_around(HoleCase& hole) {
-  int rim = 0, other = 0, unseen = 0;
-  for (const std::int32_t slot : hole.workspace.members) {
-    const CellIndex at =
-        hole.grid().geometry.index_of(hole.grid().cell[static_cast<std::size_t>(slot)]);
-    for (int direction = 0; direction < 9; ++direction) {
-      const int l = direction / 3 - 1, w = direction % 3 - 1;
-      if (l == 0 && w == 0) continue;
-      switch (look_out(hole, at, l, w)) {
-        case Surrounding::kRim:
-          ++rim;
-          hole.sides |= 1U << static_cast<unsigned>(direction);
-          break;
-        case Surrounding::kOther:
-          ++other;
-          break;
-        case Surrounding::kUnseen:
-          ++unseen;
-          break;
-        case Surrounding::kHole:
-          break;
-      }
+  int all_rim = 0, all_other = 0, all_unseen = 0;
+  hole.sides = 0;
+  for (unsigned direction = 0; direction < 9; ++direction) {
+    const int l = static_cast<int>(direction) / 3 - 1, w = static_cast<int>(direction) % 3 - 1;
+    if (l == 0 && w == 0) continue;
+    int rim = 0, other = 0, unseen = 0;
+    for (const std::int32_t slot : hole.workspace.members) {
+      const CellId cell = hole.grid().cell[static_cast<std::size_t>(slot)];
+      const Surrounding met = look_out(hole, hole.grid().geometry.index_of(cell), l, w);
+      rim += met == Surrounding::kRim ? 1 : 0;
+      other += met == Surrounding::kOther ? 1 : 0;
+      unseen += met == Surrounding::kUnseen ? 1 : 0;
     }
+    if (rim > 0 && rim >= kSideShare * (rim + other + unseen)) hole.sides |= 1U << direction;
+    all_rim += rim;
+    all_other += other;
+    all_unseen += unseen;
   }
-  hole.closed = static_cast<double>(rim) / std::max(rim + other, 1);
-  hole.seen = static_cast<double>(rim + other) / std::max(rim + other + unseen, 1);
+  const int seen = all_rim + all_other;
+  hole.closed = static_cast<double>(all_rim) / std::max(seen, 1);
+  hole.seen = static_cast<double>(seen) / std::max(seen + all_unseen, 1);
 }
 
 /// Points of a hole and its walls, by depth.
@@ -476,6 +479,12 @@ HoleDescription describe_hole(const HoleCase& hole, const HoleCounts& counts,
   result.depth = hole.depth;
   result.points = counts.floor;
   result.rings = rings.rings;
+  const double walled =
+      hole.input.origins.known()
+          ? std::min(1.0, static_cast<double>(rings.walled) / std::max(counts.floor, 1))
+          : hole.params.walled;
+  const double even = 1.0 - hole.rim.sigma / hole.depth;
+  result.confidence = hole.closed * hole.seen * walled * std::max(even, 0.0);
   result.slot = *std::min_element(hole.workspace.members.begin(), hole.workspace.members.end());
   double x = 0.0, y = 0.0, n = 0.0;
   for (const HolePoint& p : hole.workspace.points) {
@@ -500,7 +509,7 @@ bool is_hole(HoleCase& hole, HoleDescription& description) {
   if (counts.floor < hole.params.least_points) return false;
   look_around(hole);
   if (hole.closed < hole.params.closed || hole.seen < hole.params.seen) return false;
-  if (bits_of(hole.sides) < kFewestSides) return false;
+  if (opposite_sides(hole.sides) < kFewestOpposite) return false;
   RingEvidence rings;
   if (!has_walls(hole, counts, rings)) return false;
   description = describe_hole(hole, counts, rings);

@@ -17,10 +17,12 @@ constexpr float kStep = 0.4F;
 constexpr float kOpening = 0.6F, kFarthest = 60.0F;
 // ...until they are above the ground but for so much, metres.
 constexpr float kAboveGround = 0.05F;
-// Met so often, and at least at every second step, the ground speaks against a point.
-constexpr int kFewestCrossed = 3;
+// Met so often, and at least at every third step, the ground speaks against a point.
+constexpr int kFewestCrossed = 3, kSteps = 3;
+// Low heights of cells that are ground: so near to the reference, metres.
+constexpr float kOnGround = 0.2F;
 
-bool is_stray(const HoleInput& input, const FieldCells& cells, const CellPoint& p) {
+bool is_stray(const HoleInput& input, const CellPoint& p) {
   const auto& origin = input.origins.of(static_cast<std::size_t>(p.index));
   const float dx = origin[0] - p.x, dy = origin[1] - p.y, dz = origin[2] - p.z;
   const float range = std::hypot(dx, dy);
@@ -30,12 +32,14 @@ bool is_stray(const HoleInput& input, const FieldCells& cells, const CellPoint& 
     const float x = p.x + share * dx, y = p.y + share * dy;
     if (p.z + share * dz > input.field.surface.height_at(x, y) - kAboveGround) break;
     ++steps;
-    CellIndex cell;
-    if (!input.grid.geometry.cell_at(x, y, cell)) continue;
-    const Slot slot = input.grid.slot_at(cell);
-    if (slot != kUnobserved && cells.on[static_cast<std::size_t>(slot)] > 0) ++crossed;
+    const std::int32_t cell = input.field.surface.lattice().cell_at(x, y);
+    const std::int32_t slot =
+        cell < 0 ? -1 : input.field.surface.cells.slot_of[static_cast<std::size_t>(cell)];
+    if (slot < 0) continue;
+    const float low = input.field.surface.ground[static_cast<std::size_t>(slot)].low;
+    if (std::abs(low - input.field.surface.height_at(x, y)) < kOnGround) ++crossed;
   }
-  return crossed >= kFewestCrossed && 2 * crossed >= steps;
+  return crossed >= kFewestCrossed && kSteps * crossed >= steps;
 }
 
 /// Points below the ground in a group of cells.
@@ -44,7 +48,7 @@ struct LowPoints {
 };
 
 // Marks stray points; per slot, how many points below the ground there are, and how many are stray.
-void mark_stray(const HoleInput& input, const FieldCells& cells, HoleWorkspace& workspace) {
+void mark_stray(const HoleInput& input, HoleWorkspace& workspace) {
   std::fill(workspace.deep.begin(), workspace.deep.end(), 0);
   workspace.stray.assign(input.field.points.support.size(), 0);
   if (!input.origins.known()) return;
@@ -55,7 +59,7 @@ void mark_stray(const HoleInput& input, const FieldCells& cells, HoleWorkspace& 
     CellIndex cell;
     if (!input.grid.geometry.cell_at(p.x, p.y, cell)) continue;
     const Slot slot = input.grid.slot_at(cell);
-    if (slot == kUnobserved || !is_stray(input, cells, p)) continue;
+    if (slot == kUnobserved || !is_stray(input, p)) continue;
     workspace.stray[static_cast<std::size_t>(p.index)] = 1;
     ++workspace.deep[static_cast<std::size_t>(slot)];
   }
@@ -68,7 +72,7 @@ void take_back_stray_cells(const HoleInput& input, int least_points, const Field
   const std::size_t n = input.grid.observed();
   workspace.deep.resize(n);
   workspace.all.assign(n, 0);
-  mark_stray(input, cells, workspace);
+  mark_stray(input, workspace);
   for (std::size_t first = 0; first < n; ++first) {
     if (ground.rule[first] != GroundRule::kLow || workspace.all[first] != 0) continue;
     workspace.members.assign(1, static_cast<std::int32_t>(first));

@@ -20,6 +20,7 @@
 #include "mrpt_terrain/core/holes.h"
 #include "mrpt_terrain/core/label_stage.h"
 #include "mrpt_terrain/core/labels.h"
+#include "mrpt_terrain/core/overhangs.h"
 #include "mrpt_terrain/core/raised_ground.h"
 #include "mrpt_terrain/core/roughness.h"
 #include "mrpt_terrain/core/scan_view.h"
@@ -58,6 +59,7 @@ struct DescriptionParams {
   HoleParams holes;
   DeckParams decks;
   RaisedGroundParams raised_ground;
+  OverhangParams overhangs;
   FieldClusterParams field_clusters;
   GroundParams ground;
   ClusterParams clusters;
@@ -75,6 +77,7 @@ struct DescriptionParams {
     visit(self.holes, "holes", "Field mode: potholes and ditches");
     visit(self.decks, "decks", "Field mode: raised surfaces to drive on");
     visit(self.raised_ground, "raised_ground", "Field mode: ground that is part of a thing");
+    visit(self.overhangs, "overhangs", "Field mode: free under what hangs");
     visit(self.field_clusters, "field_clusters", "Field mode: clusters that are things");
     visit(self.ground, "ground", "Ground segmentation, eqs. (1) and (2)");
     visit(self.clusters, "clusters", "Grids clustering");

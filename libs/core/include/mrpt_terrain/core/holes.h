@@ -59,11 +59,13 @@ struct HoleParams {
 
 /// A hole as it was found. Metres, frame of the scan.
 struct HoleDescription {
-  Position2 centre;         ///< mean of its floor's points
-  double length = 0.0;      ///< along its longer axis; of a rectangle with the cells' moments
-  double width = 0.0;       ///< across
-  double depth = 0.0;       ///< below the rim, a lower bound: what was seen of the floor
-  double confidence = 0.0;  ///< 0 to 1
+  Position2 centre;     ///< mean of its floor's points
+  double length = 0.0;  ///< along its longer axis; of a rectangle with the cells' moments
+  double width = 0.0;   ///< across
+  double depth = 0.0;   ///< below the rim, a lower bound: what was seen of the floor
+  /// 0 to 1: product of the shares of the surroundings that are seen, and of these that are rim, of
+  /// the floor's points between walls, and of the depth that the rim's spread is not.
+  double confidence = 0.0;
   std::int32_t points = 0;  ///< on the floor
   std::int32_t rings = 0;   ///< that show the floor between two walls; 0: origins unknown
   std::int32_t slot = -1;   ///< one of its cells

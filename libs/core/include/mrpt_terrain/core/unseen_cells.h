@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mrpt_terrain/core/describe.h"
+
+namespace mrpt_terrain {
+
+/// Why nothing is known of the ground in a cell.
+enum class UnseenReason : std::uint8_t {
+  kSeen = 0,   ///< it holds points on or below the ground
+  kOutOfView,  ///< no beam points there: nearer than the lowest beams, or beside the field of view
+  kOccluded,   ///< behind something that stands nearer in that direction, or under it
+  kNoReturn,   ///< in view, but nothing came back: between rings, too far, water, the ground ends
+};
+constexpr EnumNames<UnseenReason, 4> enum_names(UnseenReason) {
+  return {{{UnseenReason::kSeen, "seen"},
+           {UnseenReason::kOutOfView, "out_of_view"},
+           {UnseenReason::kOccluded, "occluded"},
+           {UnseenReason::kNoReturn, "no_return"}}};
+}
+
+/// A thing in a sector as the sensor sees it.
+struct SectorThing {
+  float range;  ///< horizontal, metres
+  float top;    ///< tangent of the elevation of its highest point, or of one before it
+};
+
+/// Scratch memory of `explain_unseen_cells`.
+struct UnseenWorkspace {
+  std::vector<float> lowest;        ///< per sector: tangent of the lowest beam with a return
+  std::vector<std::int32_t> first;  ///< per sector, and one more: its things
+  std::vector<std::int32_t> count;  ///< per sector
+  std::vector<SectorThing> things;  ///< by sector, then by range
+};
+
+/// Tells for every cell of a description of field mode why nothing is known of its ground. The
+/// field of view is told from the scan: a sector of half a degree reaches down to the lowest beam
+/// that came back within ten degrees; without any, it is out of view. Things that begin within 0.5
+/// m of the ground cast shadows as high as their tops. \param scan with the origins of its beams;
+/// where they are unknown, cells that are not seen are kNoReturn. The first origin stands for all
+/// \param reference the workspace with which `describe` has described the scan
+/// \param[out] reasons per `CellId` of the description's grid, frame included (kNoReturn there)
+void explain_unseen_cells(const ScanView& scan, const DescriptionWorkspace& reference,
+                          const Description& description, UnseenWorkspace& workspace,
+                          std::vector<UnseenReason>& reasons);
+
+}  // namespace mrpt_terrain
