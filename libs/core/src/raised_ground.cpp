@@ -259,4 +259,11 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
   look_at_edges(grid, ground, blocks, workspace, cells);
 }
 
+const GroundAround* ground_around(const GridGeometry& geometry, const RaisedGroundParams& params,
+                                  const RaisedGroundWorkspace& workspace, double x, double y) {
+  CellIndex cell;
+  if (workspace.around.empty() || !geometry.cell_at(x, y, cell)) return nullptr;
+  return &workspace.around[Blocks(geometry, params.block).of(cell)];
+}
+
 }  // namespace mrpt_terrain

@@ -75,6 +75,8 @@ struct ThingRecord {
   std::size_t dropped = 0;           ///< of the thing: in no cluster and not called ground
   std::size_t parts = 0;             ///< MatchedThing::parts
   std::size_t swallowed = 0;         ///< ClusterMatching::swallowed of the cluster
+  std::int32_t points = 0, cells = 0, raised = 0;  ///< of the cluster, as described
+  double confidence = 0.0;                         ///< of the cluster, as described
   [[nodiscard]] double iou() const;
 };
 
