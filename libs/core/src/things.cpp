@@ -14,6 +14,8 @@ constexpr int kStepReach = 2;
 constexpr double kTail = 0.1;
 // A thing with this share of its points on one face is not rough.
 constexpr double kFaceShare = 0.5;
+// Logarithm of the number of points from which more points make a thing no more likely.
+constexpr double kLargest = 6.6;
 
 // Height index (3) with heights above the reference: a thing on falling ground keeps its sign.
 HeightIndex height_above_ground(const GroundSegmentation& ground, IndexRange slots, double mean,
@@ -134,9 +136,10 @@ void measure_to_ground(const GroundAround& around, double max_sigma, ClusterDesc
 
 }  // namespace
 
-double confidence_of(double points, double cells, double raised) {
-  const double x = -1.0 + 0.8 * std::log(points) - 0.3 * std::log(cells) - raised;
-  return 1.0 / (1.0 + std::exp(-x));
+double confidence_of(double points, double raised) {
+  const double size = std::min(std::log(points), kLargest);
+  const double logit = -5.0 + 2.37 * size - 0.178 * size * size - 1.49 * raised;
+  return 1.0 / (1.0 + std::exp(-logit));
 }
 
 void measure_things(const StageInput& stage, DescriptionWorkspace& workspace,
@@ -159,7 +162,7 @@ void measure_things(const StageInput& stage, DescriptionWorkspace& workspace,
     measure_roughness(stage.params, moments, thing);
     thing.scatter = scatter_of(moments);
     thing.raised = sums.raised;
-    thing.confidence = confidence_of(std::max(moments.n, 1.0), thing.cells,
+    thing.confidence = confidence_of(std::max(moments.n, 1.0),
                                      thing.raised / std::max(moments.n, 1.0));
     measure_steps(description, clusters.slots.row(k), workspace.steps, thing);
   }

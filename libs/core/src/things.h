@@ -26,8 +26,7 @@ void measure_thing_slopes(const StageInput& stage, DescriptionWorkspace& workspa
 
 /// Confidence of a cluster.
 /// \param points of it, >= 1
-/// \param cells that they lie in, >= 1
 /// \param raised share of its points that are raised ground
-[[nodiscard]] double confidence_of(double points, double cells, double raised);
+[[nodiscard]] double confidence_of(double points, double raised);
 
 }  // namespace mrpt_terrain
