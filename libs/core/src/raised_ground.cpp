@@ -20,14 +20,16 @@ constexpr int kTukeySteps = 5;
 constexpr float kTukeyLimit = 4.0F;  // standard deviations
 constexpr float kFirstSigma = 0.015F;
 // The guess of the gradient counts like so many samples 1 m away.
-constexpr double kPrior = 0.5;
+constexpr float kPrior = 0.5F;
 // An edge is looked for within so many cells; ground beside it lies at most so high, as a share of
 // the raised cell's height.
 constexpr int kEdgeReach = 2;
 constexpr float kSharp = 0.5F;
 // Fewer samples, or fewer that count, are no plane.
 constexpr std::size_t kFewestSamples = 8;
-constexpr double kLeastShare = 0.25;
+// More than this many say no more: every other is left out, or two of three...
+constexpr std::size_t kMostSamples = 128;
+constexpr float kLeastShare = 0.25F;
 
 struct Blocks {
   const GridGeometry& geometry;
@@ -90,56 +92,73 @@ void sort_samples(const ElevationGrid& grid, const GroundSegmentation& ground, c
 
 void collect_window(const Blocks& blocks, int row, int column, RaisedGroundWorkspace& workspace) {
   workspace.window.clear();
-  for (int i = std::max(row - 1, 0); i <= std::min(row + 1, blocks.rows - 1); ++i) {
-    // The blocks of a row lie one behind the other.
-    const std::size_t from = blocks.at(i, std::max(column - 1, 0));
-    const std::size_t to = blocks.at(i, std::min(column + 1, blocks.columns - 1)) + 1;
-    workspace.window.insert(workspace.window.end(),
-                            workspace.samples.begin() + workspace.first[from],
-                            workspace.samples.begin() + workspace.first[to]);
+  const int first_row = std::max(row - 1, 0), last_row = std::min(row + 1, blocks.rows - 1);
+  // The blocks of a row lie one behind the other.
+  const auto begin = [&](int i) {
+    return static_cast<std::size_t>(workspace.first[blocks.at(i, std::max(column - 1, 0))]);
+  };
+  const auto end = [&](int i) {
+    const int last = std::min(column + 1, blocks.columns - 1);
+    return static_cast<std::size_t>(workspace.first[blocks.at(i, last) + 1]);
+  };
+  std::size_t samples = 0;
+  for (int i = first_row; i <= last_row; ++i) samples += end(i) - begin(i);
+  const std::size_t stride = samples / kMostSamples + 1;
+  std::size_t skip = 0;
+  for (int i = first_row; i <= last_row; ++i) {
+    std::size_t k = begin(i) + skip;
+    for (; k < end(i); k += stride) workspace.window.push_back(workspace.samples[k]);
+    skip = k - end(i);
   }
 }
 
 /// Weighted least squares of the plane with the prior on its gradient.
 struct PlaneSystem {
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  double weights = 0.0, squares = 0.0;
+  float w = 0.0F, u = 0.0F, v = 0.0F, uu = 0.0F, uv = 0.0F, vv = 0.0F;  ///< sums of weight
+  float z = 0.0F, uz = 0.0F, vz = 0.0F;
+  float squares = 0.0F;  ///< of the residuals, m^2
 
-  void add(float u, float v, float z, float weight, float residual) {
-    const Eigen::Vector3d row(1.0, u, v);
-    matrix += double{weight} * row * row.transpose();
-    right += double{weight} * double{z} * row;
-    weights += weight;
-    squares += double{weight} * residual * residual;
+  [[nodiscard]] Eigen::Matrix3d matrix() const {
+    Eigen::Matrix3d result;
+    result << w, u, v, u, uu + kPrior, uv, v, uv, vv + kPrior;
+    return result;
   }
 };
 
+// Heights are about the plane so far, which solves for its change.
 template <class Weight>
-PlaneSystem step(const std::vector<GroundSample>& samples, const Eigen::Vector2d& gradient,
+PlaneSystem step(const std::vector<GroundSample>& samples, const Eigen::Vector2f& gradient,
                  GroundAround& plane, Weight&& weight) {
   PlaneSystem system;
   for (const GroundSample& sample : samples) {
-    const float residual = sample.z - plane.height_at(sample.x, sample.y);
-    const float w = weight(residual);
-    if (w > 0.0F) {
-      system.add(sample.x - plane.centre_x, sample.y - plane.centre_y, sample.z - plane.height, w,
-                 residual);
-    }
+    const float u = sample.x - plane.centre_x, v = sample.y - plane.centre_y;
+    const float z = sample.z - (plane.height + plane.gradient_x * u + plane.gradient_y * v);
+    const float w = weight(z);
+    system.w += w;
+    system.u += w * u;
+    system.v += w * v;
+    system.uu += w * u * u;
+    system.uv += w * u * v;
+    system.vv += w * v * v;
+    system.z += w * z;
+    system.uz += w * u * z;
+    system.vz += w * v * z;
+    system.squares += w * z * z;
   }
-  if (system.weights <= 0.0) return system;
-  system.matrix.bottomRightCorner<2, 2>() += kPrior * Eigen::Matrix2d::Identity();
-  system.right.tail<2>() += kPrior * gradient;
-  const Eigen::Vector3d solution = system.matrix.inverse() * system.right;
-  plane.height += static_cast<float>(solution[0]);
-  plane.gradient_x = static_cast<float>(solution[1]);
-  plane.gradient_y = static_cast<float>(solution[2]);
+  if (system.w <= 0.0F) return system;
+  const Eigen::Vector3d right(
+      system.z, system.uz + kPrior * (gradient.x() - plane.gradient_x),
+      system.vz + kPrior * (gradient.y() - plane.gradient_y));
+  const Eigen::Vector3f change = (system.matrix().inverse() * right).cast<float>();
+  plane.height += change.x();
+  plane.gradient_x += change.y();
+  plane.gradient_y += change.z();
   return system;
 }
 
 void fit_plane(const std::vector<GroundSample>& samples, const RaisedGroundParams& params,
                GroundAround& plane) {
-  const Eigen::Vector2d gradient(plane.gradient_x, plane.gradient_y);
+  const Eigen::Vector2f gradient(plane.gradient_x, plane.gradient_y);
   for (const float scale : kCauchyScales) {
     step(samples, gradient, plane, [scale](float r) {
       return r < 0.0F ? kBelow : 1.0F / (1.0F + r * r / (scale * scale));
@@ -154,12 +173,11 @@ void fit_plane(const std::vector<GroundSample>& samples, const RaisedGroundParam
       const float share = 1.0F - r * r / (limit * limit);
       return share > 0.0F ? share * share : 0.0F;
     });
-    if (system.weights < kLeastShare * static_cast<double>(samples.size())) return;
-    plane.sigma =
-        std::max(static_cast<float>(std::sqrt(system.squares / system.weights)) * 1.1F, least);
+    if (system.w < kLeastShare * static_cast<float>(samples.size())) return;
+    plane.sigma = std::max(1.1F * std::sqrt(system.squares / system.w), least);
   }
   if (plane.sigma > static_cast<float>(params.sigma_max)) return;
-  const Eigen::Matrix3d spread = system.matrix.inverse();
+  const Eigen::Matrix3d spread = system.matrix().inverse();
   int k = 0;
   for (int i = 0; i < 3; ++i) {
     for (int j = i; j < 3; ++j) plane.spread[k++] = static_cast<float>(spread(i, j));
