@@ -27,8 +27,9 @@ constexpr float kOnFace = 3.0F;
 // sensor is tilted, radians: 0.5 deg, and less than half of the narrowest usual beam spacing.
 constexpr float kColumn = 0.0087F;
 constexpr float kRingGap = 0.0026F;
-// A single ring shows no slope.
+// A single ring shows no slope, nor do two one behind the other.
 constexpr std::size_t kFewestRings = 2;
+constexpr double kLeastRingsPerColumn = 1.5;
 
 Eigen::Vector3f centre_of(const PointsView& points, IndexRange members) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -156,6 +157,17 @@ double width_of(const Moments& m) {
   return std::sqrt(std::max(0.0, least / std::max(m.n, 1.0)));
 }
 
+// Rings per column, mean over the columns in which the face was seen.
+double rings_per_column(const std::vector<FaceBeam>& beams) {
+  std::size_t rings = 0, columns = 0;
+  for (std::size_t k = 0; k < beams.size(); ++k) {
+    const bool next = k == 0 || beams[k].column != beams[k - 1].column;
+    columns += next ? 1U : 0U;
+    rings += next || beams[k].elevation - beams[k - 1].elevation > kRingGap ? 1U : 0U;
+  }
+  return columns == 0 ? 0.0 : static_cast<double>(rings) / static_cast<double>(columns);
+}
+
 // The ring that a beam belongs to: that whose elevation was nearest in the columns before.
 FaceRing& ring_of(const FaceBeam& beam, std::vector<FaceRing>& rings) {
   FaceRing* nearest = nullptr;
@@ -266,7 +278,8 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
     return slope;
   }
   add_errors_of_rings(face, params.ring_sigma, workspace, fit);
-  if (workspace.rings.size() < kFewestRings) {
+  if (workspace.rings.size() < kFewestRings ||
+      rings_per_column(workspace.beams) < kLeastRingsPerColumn) {
     slope.status = FeatureStatus::kUncertain;
     return slope;
   }

@@ -28,7 +28,7 @@ constexpr float kSharp = 0.5F;
 // Fewer samples, or fewer that count, are no plane.
 constexpr std::size_t kFewestSamples = 8;
 // More than this many say no more: every other is left out, or two of three...
-constexpr std::size_t kMostSamples = 128;
+constexpr std::size_t kMostSamples = 64;
 constexpr float kLeastShare = 0.25F;
 
 struct Blocks {
