@@ -83,7 +83,8 @@ void place_scan(ScanPipeline& pipeline, view::ScanRecord& record) {
 void name_things(const io::Scan& scan, ScanDescriber& describer) {
   if (describer.params.description.mode != DescriptionMode::kField || !scan.T_map_robot) return;
   std::vector<ClusterDescription>& things = describer.description.things;
-  const Eigen::Isometry3d T_map_robot(scan.T_map_robot->getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen());
+  const Eigen::Isometry3d T_map_robot(
+      scan.T_map_robot->getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen());
   const std::vector<std::uint64_t>& identities =
       describer.tracker.update(things, T_map_robot, scan.stamp);
   for (std::size_t k = 0; k < things.size(); ++k) things[k].identity = identities[k];

@@ -65,8 +65,8 @@ TEST(FaceSlope, ExactFacesHaveTheirAngleAndDirection) {
   for (const double angle : {6.0, 12.0, 20.0}) {
     for (const double direction : {0.0, 40.0, 90.0, -80.0}) {
       RandomGenerator random(91, 0);
-      const Slope slope = slope_of(
-          FaceScan{angle * kDegree, direction * kDegree, 0.8, 0.0, 0.0}.seen(random));
+      const Slope slope =
+          slope_of(FaceScan{angle * kDegree, direction * kDegree, 0.8, 0.0, 0.0}.seen(random));
       ASSERT_EQ(slope.status, FeatureStatus::kOk) << angle << ' ' << direction;
       EXPECT_NEAR(slope.angle, angle * kDegree, 1e-4) << angle << ' ' << direction;
       EXPECT_NEAR(std::remainder(slope.direction - direction * kDegree, 2 * M_PI), 0.0, 1e-3);
@@ -84,8 +84,8 @@ TEST(FaceSlope, StatedDeviationsHold) {
     for (std::uint64_t trial = 0; trial < 400; ++trial) {
       RandomGenerator random(92, trial);
       const double direction = M_PI * (random.uniform() - 0.5);
-      const Slope slope =
-          slope_of(FaceScan{14.0 * kDegree, direction, 0.8, 0.015, ring_noise}.seen(random), params);
+      const Slope slope = slope_of(
+          FaceScan{14.0 * kDegree, direction, 0.8, 0.015, ring_noise}.seen(random), params);
       if (slope.status != FeatureStatus::kOk) continue;
       ++measured;
       angle_in += std::abs(slope.angle - 14.0 * kDegree) <= 2.0 * slope.angle_sigma ? 1 : 0;
@@ -129,11 +129,13 @@ TEST(FaceSlope, WhatIsNoFaceHasAStatus) {
   }
   EXPECT_EQ(slope_of(wall).status, FeatureStatus::kNotPlanar);
   EXPECT_NE(slope_of(ring).status, FeatureStatus::kOk) << "a single ring shows no slope";
-  EXPECT_EQ(slope_of(heap, [] {
-              BeamSlopeParams params;
-              params.least_share = 0.5;
-              return params;
-            }()).status,
+  EXPECT_EQ(slope_of(heap,
+                     [] {
+                       BeamSlopeParams params;
+                       params.least_share = 0.5;
+                       return params;
+                     }())
+                .status,
             FeatureStatus::kNotPlanar);
   EXPECT_EQ(slope_of(Points{}).status, FeatureStatus::kTooFewPoints);
   FaceSlopeWorkspace workspace;

@@ -77,8 +77,8 @@ TEST(ThingTracker, ThingsThatCrossKeepTheirIdentities) {
   ThingTracker tracker;
   for (int scan = 0; scan < 40; ++scan) {
     const double x = 0.15 * (scan - 20);
-    const Identities identities = tracker.update(
-        {thing(x, 0.45, 0.5, 0.5), thing(-x, -0.45, 0.5, 0.5)}, kStill, 0.1 * scan);
+    const Identities identities =
+        tracker.update({thing(x, 0.45, 0.5, 0.5), thing(-x, -0.45, 0.5, 0.5)}, kStill, 0.1 * scan);
     EXPECT_EQ(identities, (Identities{1, 2})) << scan;
   }
 }

@@ -36,9 +36,7 @@ TEST(IdentityScore, CountsByHand) {
   EXPECT_EQ(score.kept_where_found.value(), 2.0 / 3.0);
 }
 
-TEST(IdentityScore, NoScansAreNoObjects) {
-  EXPECT_EQ(IdentityHistory().score().objects, 0U);
-}
+TEST(IdentityScore, NoScansAreNoObjects) { EXPECT_EQ(IdentityHistory().score().objects, 0U); }
 
 }  // namespace
 }  // namespace mrpt_terrain::eval

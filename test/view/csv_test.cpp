@@ -154,9 +154,9 @@ TEST(Csv, UncertaintiesAreThereWhereTheMethodKnowsThem) {
 
 // What field mode measures, empty in paper mode.
 TEST(Csv, FeaturesOfFieldMode) {
-  for (const char* column : {"raised", "scatter", "lowest_step", "highest_step", "confidence",
-                             "box_x", "box_y", "box_yaw_deg", "box_length", "box_width",
-                             "identity"}) {
+  for (const char* column :
+       {"raised", "scatter", "lowest_step", "highest_step", "confidence", "box_x", "box_y",
+        "box_yaw_deg", "box_length", "box_width", "identity"}) {
     EXPECT_EQ(rows_of(clusters_csv())[0].at(column), "") << column;
   }
   Description description = two_clusters();

@@ -101,8 +101,7 @@ bool is_promising(const FaceSlopeWorkspace& workspace, const BeamPlane& plane,
     const float e = n.x() * workspace.x[i] + n.y() * workspace.y[i] + n.z() * workspace.z[i] + d;
     near += std::abs(e) <= static_cast<float>(params.seed_distance) ? 1U : 0U;
   }
-  return static_cast<double>(near) >=
-         params.least_share * static_cast<double>(workspace.x.size());
+  return static_cast<double>(near) >= params.least_share * static_cast<double>(workspace.x.size());
 }
 
 // Only points near the first plane say how large the noise is.
@@ -133,8 +132,8 @@ Moments find_face(const BeamPlaneFit& fit, FaceSlopeWorkspace& workspace) {
   for (std::size_t i = 0; i < points.size; ++i) {
     const float e = n.x() * points.x[i] + n.y() * points.y[i] + n.z() * points.z[i] + d;
     const float along = n.x() * points.dx[i] + n.y() * points.dy[i] + n.z() * points.dz[i];
-    const float sigma = static_cast<float>(fit.range_sigma) *
-                        std::hypot(along, static_cast<float>(kAcrossBeam));
+    const float sigma =
+        static_cast<float>(fit.range_sigma) * std::hypot(along, static_cast<float>(kAcrossBeam));
     if (std::abs(e) > kOnFace * sigma) continue;
     sums.add(points.x[i], points.y[i], points.z[i]);
     const float turn = std::atan2(points.dy[i], points.dx[i]);
@@ -212,18 +211,18 @@ void add_errors_of_rings(const Moments& face, double ring_sigma, FaceSlopeWorksp
 }
 
 void report(const BeamPlaneFit& fit, const Eigen::Vector3d& centre, Slope& slope) {
-  const Eigen::Vector3d n = fit.plane.normal.z() < 0.0 ? Eigen::Vector3d(-fit.plane.normal)
-                                                       : fit.plane.normal;
+  const Eigen::Vector3d n =
+      fit.plane.normal.z() < 0.0 ? Eigen::Vector3d(-fit.plane.normal) : fit.plane.normal;
   const double offset = fit.plane.normal.z() < 0.0 ? -fit.plane.offset : fit.plane.offset;
   slope.normal = n;
   slope.offset = offset - n.dot(centre);
   slope.angle = std::atan2(n.head<2>().norm(), n.z());
   slope.direction = direction_of(n);
   const double horizontal = n.head<2>().norm();
-  const Eigen::Vector3d up = horizontal > 1e-9
-                                 ? Eigen::Vector3d(n.x() * n.z() / horizontal,
-                                                   n.y() * n.z() / horizontal, -horizontal)
-                                 : n.unitOrthogonal();
+  const Eigen::Vector3d up =
+      horizontal > 1e-9
+          ? Eigen::Vector3d(n.x() * n.z() / horizontal, n.y() * n.z() / horizontal, -horizontal)
+          : n.unitOrthogonal();
   const double variance = std::max(0.0, up.dot(fit.normal_covariance * up));
   slope.angle_sigma = std::sqrt(variance);
   slope.direction_sigma = kPi;
@@ -261,9 +260,8 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
     return slope;
   }
   load(points, origins, members, centre, workspace.points);
-  BeamPlaneFit fit =
-      fit_beam_plane(workspace.points, *first, first_sigma(*first, params, workspace),
-                     params.least_sigma, kSteps);
+  BeamPlaneFit fit = fit_beam_plane(
+      workspace.points, *first, first_sigma(*first, params, workspace), params.least_sigma, kSteps);
   if (!fit.ok) {
     slope.status = FeatureStatus::kDegenerate;
     return slope;
@@ -289,8 +287,8 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
   // A ring lies in a plane through the sensor whatever it meets.
   const bool seen_from_above = grazing >= kLeastGrazing;
   const bool planar = seen_from_above &&
-      fit.inliers >= params.least_share * static_cast<double>(members.size()) &&
-      across <= params.max_scatter && slope.angle <= kSteepestFace;
+                      fit.inliers >= params.least_share * static_cast<double>(members.size()) &&
+                      across <= params.max_scatter && slope.angle <= kSteepestFace;
   const bool certain = fit.converged && slope.angle_sigma <= params.max_angle_sigma;
   slope.status = !planar   ? FeatureStatus::kNotPlanar
                  : certain ? FeatureStatus::kOk

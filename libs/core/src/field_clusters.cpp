@@ -149,8 +149,8 @@ void count_members(const Linker& linker, FieldClusterWorkspace& workspace) {
   const FieldCells& cells = linker.cells;
   const std::size_t n = cells.size();
   workspace.cells_of.assign(n, 0);
-  for (auto* counts : {&workspace.points_of, &workspace.sharp_of, &workspace.smooth_of,
-                       &workspace.above_of})
+  for (auto* counts :
+       {&workspace.points_of, &workspace.sharp_of, &workspace.smooth_of, &workspace.above_of})
     counts->assign(n, 0);
   for (std::size_t slot = 0; slot < n; ++slot) {
     if (!linker.is_member(slot)) continue;
@@ -193,8 +193,12 @@ void number_things(const FieldClusterParams& params, FieldClusterWorkspace& work
 void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& ground,
                          const FieldCells& cells, const FieldClusterParams& params,
                          FieldClusterWorkspace& workspace, Clusters& result) {
-  const Linker linker{grid, ground, cells, static_cast<float>(params.step),
-                      static_cast<float>(params.flat), static_cast<float>(params.level)};
+  const Linker linker{grid,
+                      ground,
+                      cells,
+                      static_cast<float>(params.step),
+                      static_cast<float>(params.flat),
+                      static_cast<float>(params.level)};
   const std::size_t n = grid.observed();
   workspace.parent.resize(n);
   for (std::size_t slot = 0; slot < n; ++slot) {

@@ -47,9 +47,7 @@ struct Blocks {
   [[nodiscard]] std::size_t at(int row, int column) const {
     return static_cast<std::size_t>(row * columns + column);
   }
-  [[nodiscard]] std::size_t of(CellIndex cell) const {
-    return at(cell.l / cells, cell.w / cells);
-  }
+  [[nodiscard]] std::size_t of(CellIndex cell) const { return at(cell.l / cells, cell.w / cells); }
 };
 
 void sum_ground(const PointsView& points, const FieldPoints& field, const PointSlots& point_slots,
@@ -146,9 +144,8 @@ PlaneSystem step(const std::vector<GroundSample>& samples, const Eigen::Vector2f
     system.squares += w * z * z;
   }
   if (system.w <= 0.0F) return system;
-  const Eigen::Vector3d right(
-      system.z, system.uz + kPrior * (gradient.x() - plane.gradient_x),
-      system.vz + kPrior * (gradient.y() - plane.gradient_y));
+  const Eigen::Vector3d right(system.z, system.uz + kPrior * (gradient.x() - plane.gradient_x),
+                              system.vz + kPrior * (gradient.y() - plane.gradient_y));
   const Eigen::Vector3f change = (system.matrix().inverse() * right).cast<float>();
   plane.height += change.x();
   plane.gradient_x += change.y();
@@ -160,9 +157,8 @@ void fit_plane(const std::vector<GroundSample>& samples, const RaisedGroundParam
                GroundAround& plane) {
   const Eigen::Vector2f gradient(plane.gradient_x, plane.gradient_y);
   for (const float scale : kCauchyScales) {
-    step(samples, gradient, plane, [scale](float r) {
-      return r < 0.0F ? kBelow : 1.0F / (1.0F + r * r / (scale * scale));
-    });
+    step(samples, gradient, plane,
+         [scale](float r) { return r < 0.0F ? kBelow : 1.0F / (1.0F + r * r / (scale * scale)); });
   }
   const auto least = static_cast<float>(params.sigma_min);
   plane.sigma = std::max(kFirstSigma, least);
@@ -213,8 +209,9 @@ void fit_planes(const FieldWorkspace& field, const Blocks& blocks, const RaisedG
 }
 
 // Looks in four directions for the first observed cell within two cells.
-void look_at_edges(const ElevationGrid& grid, const GroundSegmentation& ground, const Blocks& blocks,
-                   const RaisedGroundWorkspace& workspace, FieldCells& cells) {
+void look_at_edges(const ElevationGrid& grid, const GroundSegmentation& ground,
+                   const Blocks& blocks, const RaisedGroundWorkspace& workspace,
+                   FieldCells& cells) {
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
     if (cells.raised[slot] == 0) continue;
     const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
@@ -229,8 +226,7 @@ void look_at_edges(const ElevationGrid& grid, const GroundSegmentation& ground, 
       const auto o = static_cast<std::size_t>(other);
       const RaisedGroundWorkspace::Sums& sums = workspace.sums[o];
       if (!ground.is_ground(o) || cells.raised[o] > 0 || sums.n == 0.0F) continue;
-      const float beside =
-          (sums.z / sums.n) - plane.height_at(sums.x / sums.n, sums.y / sums.n);
+      const float beside = (sums.z / sums.n) - plane.height_at(sums.x / sums.n, sums.y / sums.n);
       ++(beside < kSharp * height ? cells.sharp_edges : cells.smooth_edges)[slot];
     }
   }
@@ -265,8 +261,7 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
     if (!plane.known) continue;
     const float height = points.z[i] - plane.height_at(points.x[i], points.y[i]);
     if (height < least) continue;
-    const float sigma =
-        plane.sigma * std::sqrt(1.0F + plane.leverage_at(points.x[i], points.y[i]));
+    const float sigma = plane.sigma * std::sqrt(1.0F + plane.leverage_at(points.x[i], points.y[i]));
     if (height < least + sigmas * sigma) continue;
     workspace.height[i] = height;
     cells.raised_low[slot] =

@@ -125,11 +125,10 @@ const std::vector<std::uint64_t>& ThingTracker::update(
   identities_.assign(things.size(), 0);
   find_pairs();
   take_pairs(stamp);
-  tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(),
-                               [&](const Track& track) {
-                                 return stamp - track.seen > params_.memory;
-                               }),
-                tracks_.end());
+  tracks_.erase(
+      std::remove_if(tracks_.begin(), tracks_.end(),
+                     [&](const Track& track) { return stamp - track.seen > params_.memory; }),
+      tracks_.end());
   for (std::size_t k = 0; k < things.size(); ++k) {
     if (identities_[k] != 0) continue;
     identities_[k] = next_++;

@@ -44,8 +44,8 @@ void sum_things(const PointsView& points, DescriptionWorkspace& workspace,
     const auto cell = static_cast<std::size_t>(slot);
     const bool hole = description.ground.rule[cell] == GroundRule::kLow;
     const float raised = workspace.raised_ground.height[i];
-    const float height = hole ? points.z[i] - description.field.rim[cell]
-                              : std::max(field.height[i], raised);
+    const float height =
+        hole ? points.z[i] - description.field.rim[cell] : std::max(field.height[i], raised);
     sums.height += height;
     sums.raised += raised > 0.0F ? 1 : 0;
     sums.low = std::min(sums.low, height);
@@ -68,8 +68,7 @@ double scatter_of(const Moments& moments) {
 bool ground_beside(const Description& description, CellIndex at, CellIndex direction,
                    float& height) {
   for (int k = 1; k <= kStepReach; ++k) {
-    const Slot slot =
-        description.grid.slot_at({at.l + k * direction.l, at.w + k * direction.w});
+    const Slot slot = description.grid.slot_at({at.l + k * direction.l, at.w + k * direction.w});
     if (slot == kUnobserved) continue;
     const auto s = static_cast<std::size_t>(slot);
     if (description.clusters.cluster_of[s] != kNoCluster || description.field.on[s] == 0 ||
@@ -122,14 +121,15 @@ void measure_to_ground(const GroundAround& around, double max_sigma, ClusterDesc
   const Eigen::Vector3d ground(-around.gradient_x, -around.gradient_y, 1.0);
   result.ground_normal = ground.normalized();
   const double sigma = static_cast<double>(around.sigma);
-  const double variance = sigma * sigma * 0.5 * static_cast<double>(around.spread[3] + around.spread[5]);
+  const double variance =
+      sigma * sigma * 0.5 * static_cast<double>(around.spread[3] + around.spread[5]);
   result.angle = std::atan2(thing.slope.normal.cross(result.ground_normal).norm(),
                             thing.slope.normal.dot(result.ground_normal));
   result.angle_sigma = std::sqrt(thing.slope.angle_sigma * thing.slope.angle_sigma + variance);
-  const Eigen::Vector3d at(thing.centroid.x, thing.centroid.y,
-                           static_cast<double>(around.height_at(
-                               static_cast<float>(thing.centroid.x),
-                               static_cast<float>(thing.centroid.y))));
+  const Eigen::Vector3d at(
+      thing.centroid.x, thing.centroid.y,
+      static_cast<double>(around.height_at(static_cast<float>(thing.centroid.x),
+                                           static_cast<float>(thing.centroid.y))));
   result.ground_offset = -result.ground_normal.dot(at);
   result.status = result.angle_sigma <= max_sigma ? FeatureStatus::kOk : FeatureStatus::kUncertain;
 }
@@ -162,8 +162,8 @@ void measure_things(const StageInput& stage, DescriptionWorkspace& workspace,
     measure_roughness(stage.params, moments, thing);
     thing.scatter = scatter_of(moments);
     thing.raised = sums.raised;
-    thing.confidence = confidence_of(std::max(moments.n, 1.0),
-                                     thing.raised / std::max(moments.n, 1.0));
+    thing.confidence =
+        confidence_of(std::max(moments.n, 1.0), thing.raised / std::max(moments.n, 1.0));
     measure_steps(description, clusters.slots.row(k), workspace.steps, thing);
   }
   gather_all(workspace, description);

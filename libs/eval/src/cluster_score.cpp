@@ -294,8 +294,8 @@ std::vector<ThingRecord> list_things(const PointsView& points, const ScanTruth& 
   }
   for (std::size_t c = 0; c < clusters.size(); ++c) {
     if (matching.fate[c] != ClusterFate::kFalse) continue;
-    const Overlap* overlap = largest(
-        sizes.overlaps, [c](const Overlap& each) { return index(each.cluster) == c; });
+    const Overlap* overlap =
+        largest(sizes.overlaps, [c](const Overlap& each) { return index(each.cluster) == c; });
     ThingRecord record;
     record.is_false = true;
     record.cluster = static_cast<std::int32_t>(c);

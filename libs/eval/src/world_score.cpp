@@ -90,10 +90,10 @@ void score_identities(const WorldTask& task, const DrivenWorld& world, Scratch& 
     take_scan(world, sweep, task.options, scratch.workspace, scratch.scan);
     task.describe(scratch.scan.view(), scratch.description);
     const Description& description = scratch.description;
-    history.add_scan(match_clusters(scratch.scan.points.view(), scratch.scan.truth,
-                                    description.labels, description.things, task.rules.clusters),
-                     tracker.update(description.things, scratch.scan.truth.T_map_given,
-                                    world.start_of(sweep)));
+    history.add_scan(
+        match_clusters(scratch.scan.points.view(), scratch.scan.truth, description.labels,
+                       description.things, task.rules.clusters),
+        tracker.update(description.things, scratch.scan.truth.T_map_given, world.start_of(sweep)));
   }
   score.identities = history.score();
 }

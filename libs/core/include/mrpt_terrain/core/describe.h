@@ -101,12 +101,12 @@ struct ClusterDescription {
   Position2 min_corner;  ///< of the cells' bounding rectangle, edges of cells included
   Position2 max_corner;
   // In field mode only:
-  OrientedBox box;             ///< about its points
-  std::int32_t raised = 0;     ///< of its points: ground that stands out of the ground around
-  double scatter = 0.0;        ///< RMS distance of its points from their best plane, metres
-  double lowest_step = 0.0;    ///< of the steps at its edges, metres; doc/field-mode.md
-  double highest_step = 0.0;   ///< the same; 0 both where no ground was seen beside it
-  double confidence = 0.0;     ///< [0, 1]: that it is a thing, doc/field-mode.md
+  OrientedBox box;            ///< about its points
+  std::int32_t raised = 0;    ///< of its points: ground that stands out of the ground around
+  double scatter = 0.0;       ///< RMS distance of its points from their best plane, metres
+  double lowest_step = 0.0;   ///< of the steps at its edges, metres; doc/field-mode.md
+  double highest_step = 0.0;  ///< the same; 0 both where no ground was seen beside it
+  double confidence = 0.0;    ///< [0, 1]: that it is a thing, doc/field-mode.md
   /// Number that it keeps from scan to scan; 0: unknown. `describe` knows no other scans and leaves
   /// it 0: it is for those who have poses and a `ThingTracker`.
   std::uint64_t identity = 0;

@@ -45,8 +45,9 @@ struct FieldCells {
   std::vector<std::int32_t> deck;     ///< number of the deck that the points above are, or -1
   std::vector<DeckPlane> deck_plane;  ///< where `deck` >= 0: its surface
   std::vector<float> rim;             ///< height of the ground around the cell, grid frame
-  std::vector<std::int32_t> raised;  ///< points on the ground that stand out of it (raised_ground.h)
-  std::vector<float> raised_low;     ///< of these, above the ground around, metres; 0 without
+  std::vector<std::int32_t>
+      raised;                     ///< points on the ground that stand out of it (raised_ground.h)
+  std::vector<float> raised_low;  ///< of these, above the ground around, metres; 0 without
   std::vector<float> raised_high;
   /// Of the cells beside that are ground around: how many lie less than half as high as a raised
   /// cell, and how many do not. A smooth swell of the ground has edges of the latter kind only.

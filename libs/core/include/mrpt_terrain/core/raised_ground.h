@@ -65,11 +65,11 @@ struct RaisedGroundWorkspace {
   struct Sums {
     float x = 0.0F, y = 0.0F, z = 0.0F, n = 0.0F;
   };
-  std::vector<Sums> sums;              ///< per slot: of its points on the ground
-  std::vector<std::int32_t> first;     ///< per block: of its samples; one more at the end
-  std::vector<GroundSample> samples;   ///< by block
-  std::vector<GroundSample> window;    ///< of one plane
-  std::vector<GroundAround> around;    ///< per block
+  std::vector<Sums> sums;             ///< per slot: of its points on the ground
+  std::vector<std::int32_t> first;    ///< per block: of its samples; one more at the end
+  std::vector<GroundSample> samples;  ///< by block
+  std::vector<GroundSample> window;   ///< of one plane
+  std::vector<GroundAround> around;   ///< per block
   /// Per point: how far a raised point of the ground stands above the ground around, metres; 0 for
   /// all others.
   std::vector<float> height;

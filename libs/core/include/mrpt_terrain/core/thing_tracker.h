@@ -12,10 +12,10 @@ namespace mrpt_terrain {
 
 /// How things of one scan are found again in the next.
 struct TrackingParams {
-  double memory = 5.0;        ///< seconds for which a thing is remembered that is not seen
-  double margin = 0.15;       ///< metres by which boxes are grown on all sides
-  double least_share = 0.2;   ///< of the smaller box that must be common to both
-  double height_gap = 0.5;    ///< metres between the heights of both
+  double memory = 5.0;       ///< seconds for which a thing is remembered that is not seen
+  double margin = 0.15;      ///< metres by which boxes are grown on all sides
+  double least_share = 0.2;  ///< of the smaller box that must be common to both
+  double height_gap = 0.5;   ///< metres between the heights of both
 
   template <class Self, class Visitor>
   static void visit_params(Self& self, Visitor&& visit) {
@@ -25,8 +25,8 @@ struct TrackingParams {
           ParamInfo{"margin", "", "m", 0.0, 10.0, "by which boxes are grown on all sides"});
     visit(self.least_share, ParamInfo{"least_share", "", "", 0.0, 1.0,
                                       "least share of the smaller box that is common to both"});
-    visit(self.height_gap, ParamInfo{"height_gap", "", "m", 0.0, 100.0,
-                                     "greatest gap between the heights of both"});
+    visit(self.height_gap,
+          ParamInfo{"height_gap", "", "m", 0.0, 100.0, "greatest gap between the heights of both"});
   }
 };
 
@@ -40,9 +40,9 @@ struct TrackingParams {
 ///
 /// Pairs of a thing and a remembered one whose boxes, in the map frame, share enough area and
 /// height are taken in the order of their intersection over union, the largest first; each has one
-/// partner at most. So when a thing splits, the part that is most like it keeps the number, and when
-/// two merge, the one that is most like both; the other is remembered for a while and finds its
-/// number again when they part. Classes do not matter. Equal pairs are taken in the order of
+/// partner at most. So when a thing splits, the part that is most like it keeps the number, and
+/// when two merge, the one that is most like both; the other is remembered for a while and finds
+/// its number again when they part. Classes do not matter. Equal pairs are taken in the order of
 /// numbers.
 class ThingTracker {
  public:

@@ -52,8 +52,8 @@ using ScoredScanListener = std::function<void(const ScoredScan& scored)>;
 struct WorldTask {
   const sim::Family& family;
   std::uint64_t seed = 0;
-  std::size_t scans = 8;  ///< spread evenly over the drive
-  bool approach = false;  ///< also look at the approach to holes on the path
+  std::size_t scans = 8;     ///< spread evenly over the drive
+  bool approach = false;     ///< also look at the approach to holes on the path
   bool list_things = false;  ///< fill in WorldScore::things
   std::size_t follow = 0;    ///< consecutive scans from the middle of the drive for identities
   TrackingParams tracking;   ///< of identities
