@@ -83,6 +83,11 @@ CLI::App& add_worlds(CLI::App& app, WorldsOptions& options) {
       ->capture_default_str();
   command.add_flag("--approach", options.approach,
                    "Also judge which holes on the path are found 1 m ahead of the wheels");
+  command
+      .add_option("--follow", options.follow,
+                  "Also judge how things keep their identity over N consecutive scans")
+      ->type_name("N")
+      ->check(CLI::Range(2, 100000).description(""));
   add_robot(command, options);
   command.add_option("--false-potholes", options.false_potholes, "List of all false potholes")
       ->type_name("FILE.csv");

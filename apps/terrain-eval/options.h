@@ -30,9 +30,10 @@ struct WorldsOptions {
   std::size_t scans = 8;       ///< per world
   std::size_t threads = 1;
   bool approach = false;
-  std::string sensor;     ///< instead of the world's
-  double sensor_z = 0.0;  ///< instead of the world's; 0: the world's
-  double speed = 0.0;     ///< instead of the world's; 0: the world's
+  std::size_t follow = 0;  ///< consecutive scans
+  std::string sensor;      ///< instead of the world's
+  double sensor_z = 0.0;   ///< instead of the world's; 0: the world's
+  double speed = 0.0;      ///< instead of the world's; 0: the world's
   std::uint64_t noise_seed = 1;
   bool skewed = false;
   bool level = false;

@@ -158,6 +158,18 @@ TextTable false_table(const WorldScore& score, bool details) {
   return table;
 }
 
+TextTable identity_table(const std::vector<NamedScore>& scores) {
+  TextTable table{"Identities over consecutive scans", {}, {}, ""};
+  table.header = {"", "objects", "seen", "kept %", "found", "kept %"};
+  for (const NamedScore& entry : scores) {
+    const eval::IdentityScore& score = entry.score.identities;
+    table.rows.push_back({entry.name, count(score.objects), count(score.kept.total),
+                          percent(score.kept), count(score.kept_where_found.total),
+                          percent(score.kept_where_found)});
+  }
+  return table;
+}
+
 TextTable run_table(const std::vector<NamedScore>& scores) {
   TextTable table{"Scans", {"", "worlds", "scans", "points", "ms per scan"}, {}, ""};
   for (const NamedScore& entry : scores) {
@@ -198,6 +210,7 @@ std::vector<TextTable> world_tables(const std::vector<NamedScore>& scores, bool 
     }
   }
   const WorldScore& all = scores.back().score;
+  if (all.identities.objects > 0) tables.push_back(identity_table(scores));
   if (!all.potholes.wrong.empty()) tables.push_back(false_table(all, details));
   return tables;
 }

@@ -93,6 +93,11 @@ void add_potholes(const eval::PotholeScore& score, Lines& lines) {
   lines.add("pothole_in_time", "on path", score.ahead);
 }
 
+void add_identities(const eval::IdentityScore& score, Lines& lines) {
+  lines.add("identity_kept", "seen", score.kept);
+  lines.add("identity_kept", "found", score.kept_where_found);
+}
+
 const char* const kHeader = "name,metric,group,value,count\n";
 
 }  // namespace
@@ -112,6 +117,7 @@ std::string world_csv(const std::vector<NamedScore>& scores) {
     add_errors("slope_angle", eval::angle_summary(score.slopes), lines);
     add_errors("slope_direction", eval::direction_summary(score.slopes), lines);
     add_potholes(score.potholes, lines);
+    add_identities(score.identities, lines);
     text += lines.text();
   }
   return text;
@@ -143,7 +149,7 @@ std::string false_potholes_csv(const eval::WorldScore& score) {
 std::string things_csv(const eval::WorldScore& score) {
   std::string text =
       "family,seed,sweep,what,object,type,class,cluster,described,x,y,of_object,of_cluster,shared,"
-      "iou,called_ground,in_no_cluster,parts,swallowed\n";
+      "iou,called_ground,in_no_cluster,parts,swallowed,points,cells,raised,confidence\n";
   for (const eval::ThingRecord& entry : score.things) {
     text += entry.family + "," + std::to_string(entry.seed) + "," + std::to_string(entry.sweep) +
             (entry.is_false ? ",cluster," : ",object,") + std::to_string(entry.thing) + "," +
@@ -157,7 +163,10 @@ std::string things_csv(const eval::WorldScore& score) {
     for (const std::size_t n : {entry.loose, entry.dropped, entry.parts, entry.swallowed}) {
       text += "," + std::to_string(n);
     }
-    text += "\n";
+    for (const std::int32_t n : {entry.points, entry.cells, entry.raised}) {
+      text += "," + std::to_string(n);
+    }
+    text += "," + view::fixed(entry.confidence, 3) + "\n";
   }
   return text;
 }

@@ -162,8 +162,8 @@ class WorldQueue {
       listener = [&folder](const eval::ScoredScan& scored) { dump_scan(folder, scored); };
     }
     return eval::score_world({plan_.families[family], seed, options_.scans, options_.approach,
-                              !options_.things.empty(), plan_.scans, plan_.rules, describe,
-                              listener});
+                              !options_.things.empty(), options_.follow, TrackingParams{},
+                              plan_.scans, plan_.rules, describe, listener});
   }
 
   const Plan& plan_;

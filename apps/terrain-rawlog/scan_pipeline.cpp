@@ -79,12 +79,24 @@ void place_scan(ScanPipeline& pipeline, view::ScanRecord& record) {
   record.left_out = left_out(pipeline.scan.counts);
 }
 
+// Gives things the numbers that they had in the scans before, if poses are known.
+void name_things(const io::Scan& scan, ScanDescriber& describer) {
+  if (describer.params.description.mode != DescriptionMode::kField || !scan.T_map_robot) return;
+  std::vector<ClusterDescription>& things = describer.description.things;
+  const Eigen::Isometry3d T_map_robot(
+      scan.T_map_robot->getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen());
+  const std::vector<std::uint64_t>& identities =
+      describer.tracker.update(things, T_map_robot, scan.stamp);
+  for (std::size_t k = 0; k < things.size(); ++k) things[k].identity = identities[k];
+}
+
 void describe_scan(ScanPipeline& pipeline, ScanDescriber& describer, view::ScanRecord& record) {
   const Clock::time_point start = Clock::now();
   place_scan(pipeline, record);
   StageTimer timer(record.milliseconds);
   describe(view_of(pipeline.scan), describer.params, describer.workspace, describer.description,
            &timer);
+  name_things(pipeline.scan, describer);
   record.milliseconds.total = milliseconds_since(start);
   record.counts = view::count(describer.description);
 }

@@ -8,6 +8,7 @@
 
 #include "mrpt_terrain/core/describe.h"
 #include "mrpt_terrain/core/ground_plane.h"
+#include "mrpt_terrain/core/thing_tracker.h"
 #include "mrpt_terrain/io/scan.h"
 #include "mrpt_terrain/io/trajectory.h"
 #include "mrpt_terrain/sensors/sensor_model.h"
@@ -31,6 +32,7 @@ struct ScanDescriber {
   mrpt_terrain::DescriptionParams params;
   mrpt_terrain::DescriptionWorkspace workspace;
   mrpt_terrain::Description description;
+  mrpt_terrain::ThingTracker tracker;  ///< of field mode; needs poses
 };
 
 /// Fills `pipeline.sensor_points`; its sensor pose is the one that the user gave, if there is one.

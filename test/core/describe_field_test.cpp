@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -130,6 +131,65 @@ TEST(DescribeField, LabelsOfPointsAreThoseOfTheirThings) {
     }
   }
   for (std::size_t k = 0; k < d.things.size(); ++k) EXPECT_EQ(points_of[k], d.things[k].points);
+}
+
+// Analytic: a box of 1 m x 1 m x 0.5 m, turned about the origin by 30 deg. Its lowest points may be
+// left to the ground.
+TEST(DescribeField, ABoxHasItsOrientedBoxAndItsSteps) {
+  const double yaw = radians(30.0);
+  const Points straight = box_and_hole(0.0, 0.0);
+  Points points;
+  for (std::size_t i = 0; i < straight.size(); ++i) {
+    const double x = double{straight.x[i]}, y = double{straight.y[i]};
+    worlds::add_point(points, std::cos(yaw) * x - std::sin(yaw) * y,
+                      std::sin(yaw) * x + std::cos(yaw) * y, double{straight.z[i]});
+  }
+  const Description d = described(points);
+  const ClusterDescription* box = thing_of_class(d, TerrainClass::kObstacle);
+  ASSERT_NE(box, nullptr);
+  EXPECT_NEAR(box->box.length, 1.0, 0.02);
+  EXPECT_NEAR(box->box.width, 1.0, 0.02);
+  EXPECT_NEAR(std::remainder(box->box.yaw - yaw, radians(90.0)), 0.0, radians(1.0));
+  EXPECT_NEAR(box->box.centre.x, 2.5 * std::cos(yaw) - 1.5 * std::sin(yaw), 0.02);
+  EXPECT_NEAR(box->box.centre.y, 2.5 * std::sin(yaw) + 1.5 * std::cos(yaw), 0.02);
+  EXPECT_NEAR(box->box.high, kBoxHeight, 1e-5);
+  EXPECT_NEAR(box->highest_step, kBoxHeight, 0.03);
+  EXPECT_NEAR(box->lowest_step, kBoxHeight, 0.03) << "it has the same step on all sides";
+  EXPECT_GT(box->scatter, 0.1) << "five faces are no plane";
+  EXPECT_LT(box->scatter, 0.3);
+  EXPECT_GT(box->confidence, 0.9);
+  EXPECT_LT(box->confidence, 1.0);
+  EXPECT_EQ(box->identity, 0U);
+}
+
+// Analytic: a ramp of 3 deg, 1.8 m long and 9 cm high at its end, which the reference runs over. It
+// is one thing, though all of it is ground, with its highest step at its end.
+TEST(DescribeField, AFlatRampIsAThingOfRaisedGround) {
+  const Rect ramp{2.0, 3.8, -1.2, 1.2};
+  Points points;
+  worlds::add_surface(points, kPatch, 0.05, [&](double x, double y) {
+    return worlds::inside(ramp, x, y) ? std::tan(radians(3.0)) * (x - ramp.x0) : 0.0;
+  });
+  DescriptionParams params = field_params();
+  params.slope.method = SlopeMethod::kBeam;
+  params.beam_slope.ring_sigma = 0.0;
+  constexpr std::array<float, 3> kOrigin{0.0F, 0.0F, 1.5F};
+  Description d;
+  DescriptionWorkspace workspace;
+  describe({points.view(), {&kOrigin, nullptr}}, params, workspace, d);
+  ASSERT_EQ(d.things.size(), 1U);
+  const ClusterDescription& thing = d.things.front();
+  EXPECT_EQ(thing.raised, thing.points);
+  EXPECT_EQ(thing.terrain_class, TerrainClass::kSlope);
+  ASSERT_EQ(thing.slope.status, FeatureStatus::kOk);
+  EXPECT_NEAR(thing.slope.angle, radians(3.0), radians(0.1));
+  EXPECT_NEAR(thing.slope.direction, 0.0, radians(1.0));
+  ASSERT_EQ(thing.slope.to_ground.status, FeatureStatus::kOk);
+  EXPECT_NEAR(thing.slope.to_ground.angle, radians(3.0), radians(0.5));
+  EXPECT_NEAR(thing.highest_step, 0.094, 0.03);
+  EXPECT_LT(thing.lowest_step, 0.08);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_EQ(d.labels.support[i], Support::kGround) << "a wheel can rest on it";
 }
 
 TEST(DescribeField, NoPointsGiveAnEmptyDescription) {

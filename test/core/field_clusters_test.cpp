@@ -193,6 +193,18 @@ TEST(FieldClusters, RaisedGroundIsOneThingWithWhatStandsBesideIt) {
   EXPECT_EQ(numbered({"rvr"}, touching()), (Rows{"012"}));
 }
 
+// The side of a ramp does not rise above it; a wall beside it does.
+TEST(FieldClusters, ADeckGoesWithItsSideButNotWithAWall) {
+  for (const float top : {1.04F, 1.06F}) {
+    Cells cells = drawn({"####"});
+    cells.field.deck[0] = cells.field.deck[1] = 0;
+    cells.field.high[2] = cells.field.high[3] = top;
+    EXPECT_EQ(clustered(cells, touching()).size(), top < 1.05F ? 1U : 2U) << top;
+    cells.field.deck[2] = cells.field.deck[3] = 1;
+    EXPECT_EQ(clustered(cells, touching()).size(), 1U) << "two faces of a ramp";
+  }
+}
+
 // Two rings meet a curb far apart: as long as no ground was seen between, it goes on there.
 TEST(FieldClusters, RaisedGroundGoesOnWhereNothingWasSeen) {
   FieldClusterParams params = touching();

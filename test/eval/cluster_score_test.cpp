@@ -200,5 +200,39 @@ TEST(ClusterScore, AgreesWithBruteForce) {
   EXPECT_GT(matched, 100U);
 }
 
+// Literal: a found thing, one that was mostly called ground, a cluster that is none.
+TEST(ClusterScore, ThingsAreListedWithTheirBestClusters) {
+  Case c({TerrainClass::kObstacle, TerrainClass::kSlope});
+  c.truth.things[1].id = 11;
+  c.truth.things[1].type = "box";
+  c.described(TerrainClass::kObstacle).described(TerrainClass::kOther);
+  c.add(80, 1, 0).add(20, 1, kNoCluster).add(20, 0, 0);
+  c.add(30, 2, kNoCluster).add(10, 2, 1);
+  c.add(40, 0, 1, Support::kGround);
+  c.labels.support.assign(c.points.size(), Support::kAbove);
+  for (std::size_t i = 120; i < 150; ++i) c.labels.support[i] = Support::kGround;
+  const std::vector<ThingRecord> list =
+      list_things(c.points.view(), c.truth, c.labels, c.clusters, c.matching());
+  ASSERT_EQ(list.size(), 3U);
+  EXPECT_EQ(list[0].thing, 11);
+  EXPECT_EQ(list[0].type, "box");
+  EXPECT_EQ(list[0].of_thing, 100U);
+  EXPECT_EQ(list[0].of_cluster, 100U);
+  EXPECT_EQ(list[0].shared, 80U);
+  EXPECT_DOUBLE_EQ(list[0].iou(), 80.0 / 120.0);
+  EXPECT_EQ(list[0].loose, 0U);
+  EXPECT_EQ(list[0].dropped, 20U);
+  EXPECT_DOUBLE_EQ(list[0].x, 5.0);
+  EXPECT_EQ(list[1].truth, TerrainClass::kSlope);
+  EXPECT_EQ(list[1].loose, 30U);
+  EXPECT_EQ(list[1].cluster, 1);
+  EXPECT_EQ(list[1].shared, 10U);
+  EXPECT_FALSE(list[1].is_false);
+  EXPECT_TRUE(list[2].is_false);
+  EXPECT_EQ(list[2].cluster, 1);
+  EXPECT_EQ(list[2].described, TerrainClass::kOther);
+  EXPECT_EQ(list[2].shared, 40U);
+}
+
 }  // namespace
 }  // namespace mrpt_terrain::eval

@@ -152,6 +152,41 @@ TEST(Csv, UncertaintiesAreThereWhereTheMethodKnowsThem) {
   EXPECT_DOUBLE_EQ(number(row.at("to_ground_sigma_deg")), 3.580986219567645);
 }
 
+// What field mode measures, empty in paper mode.
+TEST(Csv, FeaturesOfFieldMode) {
+  for (const char* column :
+       {"raised", "scatter", "lowest_step", "highest_step", "confidence", "box_x", "box_y",
+        "box_yaw_deg", "box_length", "box_width", "identity"}) {
+    EXPECT_EQ(rows_of(clusters_csv())[0].at(column), "") << column;
+  }
+  Description description = two_clusters();
+  ClusterDescription& thing = description.things[0];
+  thing.box = {{1.5, -2.5}, 0.5, 3.0, 1.25, 0.0F, 1.0F};
+  thing.raised = 7;
+  thing.scatter = 0.03;
+  thing.lowest_step = 0.1;
+  thing.highest_step = 0.4;
+  thing.confidence = 0.75;
+  std::ostringstream out;
+  write_clusters_csv_header(out);
+  write_clusters_csv(out, some_scan(), description);
+  thing.identity = 18;
+  write_clusters_csv(out, some_scan(), description);
+  const auto rows = rows_of(out.str());
+  EXPECT_EQ(rows[0].at("raised"), "7");
+  EXPECT_EQ(rows[0].at("scatter"), "0.03");
+  EXPECT_EQ(rows[0].at("lowest_step"), "0.1");
+  EXPECT_EQ(rows[0].at("highest_step"), "0.4");
+  EXPECT_EQ(rows[0].at("confidence"), "0.75");
+  EXPECT_EQ(rows[0].at("box_x"), "1.5");
+  EXPECT_EQ(rows[0].at("box_y"), "-2.5");
+  EXPECT_DOUBLE_EQ(number(rows[0].at("box_yaw_deg")), 28.64788975654116);
+  EXPECT_EQ(rows[0].at("box_length"), "3");
+  EXPECT_EQ(rows[0].at("box_width"), "1.25");
+  EXPECT_EQ(rows[0].at("identity"), "") << "without poses";
+  EXPECT_EQ(rows[2].at("identity"), "18");
+}
+
 TEST(Csv, FeaturesThatWereNotComputedAreEmptyAndNeverNaN) {
   const auto rows = rows_of(clusters_csv());
   ASSERT_EQ(rows.size(), 2U);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "describe_stages.h"
+#include "things.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -27,58 +28,6 @@ void find_cluster_slots(const DescriptionWorkspace& workspace, const GroundSegme
                         belongs(points.support[i], ground.rule[static_cast<std::size_t>(slot)],
                                 workspace.raised_ground.height[i]);
     cluster_slots[i] = member ? slot : point_slot_of(UnknownReason::kNone);
-  }
-}
-
-// Height index (3) with heights above the reference: a thing on falling ground keeps its sign.
-HeightIndex height_above_ground(const GroundSegmentation& ground, IndexRange slots, double mean,
-                                double lowest, double highest) {
-  HeightIndex result;
-  const auto first = static_cast<std::size_t>(*slots.begin());
-  const bool above = ground.rule[first] != GroundRule::kLow;
-  result.h_m = mean;
-  result.h_d = above ? std::max(highest, 0.0) : std::max(-lowest, 0.0);
-  result.h_f = above ? std::max(result.h_d, mean) : std::min(-result.h_d, mean);
-  return result;
-}
-
-void measure_things(const StageInput& stage, DescriptionWorkspace& workspace,
-                    Description& description) {
-  const PointsView& points = stage.scan.points;
-  const FieldPoints& field = workspace.field.points;
-  const Clusters& clusters = description.clusters;
-  workspace.cluster_sums.assign(clusters.size(), ClusterSums{});
-  for (std::size_t i = 0; i < points.size; ++i) {
-    const std::int32_t slot = workspace.cluster_slots[i];
-    if (slot < 0) continue;
-    const std::int32_t cluster = clusters.cluster_of[static_cast<std::size_t>(slot)];
-    if (cluster == kNoCluster) continue;
-    ClusterSums& sums = workspace.cluster_sums[static_cast<std::size_t>(cluster)];
-    sums.points.add(points.x[i], points.y[i], points.z[i]);
-    const auto cell = static_cast<std::size_t>(slot);
-    const bool hole = description.ground.rule[cell] == GroundRule::kLow;
-    const float height = hole ? points.z[i] - description.field.rim[cell]
-                              : std::max(field.height[i], workspace.raised_ground.height[i]);
-    sums.height += height;
-    sums.low = std::min(sums.low, height);
-    sums.high = std::max(sums.high, height);
-    sums.z_low = std::min(sums.z_low, points.z[i]);
-    sums.z_high = std::max(sums.z_high, points.z[i]);
-  }
-  description.things.assign(clusters.size(), ClusterDescription{});
-  workspace.cluster_moments.resize(clusters.size());
-  for (std::size_t k = 0; k < clusters.size(); ++k) {
-    const ClusterSums& sums = workspace.cluster_sums[k];
-    ClusterDescription& thing = description.things[k];
-    const Moments moments = workspace.cluster_moments[k] = moments_from(sums.points);
-    measure_extent(description.grid, clusters.slots.row(k), thing);
-    thing.points = static_cast<std::int32_t>(moments.n);
-    thing.centroid = {moments.mean_x, moments.mean_y};
-    thing.h_min = sums.z_low;
-    thing.h_max = sums.z_high;
-    thing.height = height_above_ground(description.ground, clusters.slots.row(k),
-                                       sums.height / std::max(moments.n, 1.0), sums.low, sums.high);
-    measure_roughness(stage.params, moments, thing);
   }
 }
 
@@ -149,7 +98,7 @@ void describe_field(const ScanView& scan, const DescriptionParams& params,
   done(Stage::kClusters);
   measure_things(stage, workspace, description);
   done(Stage::kHeightAndRoughness);
-  measure_slopes(stage, workspace, description);
+  measure_thing_slopes(stage, workspace, description);
   done(Stage::kSlope);
   classify_all(params.classes, workspace.class_of, description.things);
   done(Stage::kClasses);

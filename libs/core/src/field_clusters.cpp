@@ -35,6 +35,7 @@ struct Linker {
   const FieldCells& cells;
   float step;
   float flat;
+  float level;
 
   [[nodiscard]] bool is_member(std::size_t slot) const {
     return !ground.is_ground(slot) || cells.raised[slot] > 0;
@@ -50,13 +51,16 @@ struct Linker {
   [[nodiscard]] bool is_hole(std::size_t slot) const {
     return ground.rule[slot] == GroundRule::kLow;
   }
-  [[nodiscard]] bool same_deck(std::size_t a, std::size_t b) const {
-    return cells.deck[a] == cells.deck[b] || (cells.above[a] == 0 && cells.deck[a] < 0) ||
-           (cells.above[b] == 0 && cells.deck[b] < 0);
+  // A deck and its side, which does not rise above it, are one thing; what stands on the deck or
+  // beside it is another.
+  [[nodiscard]] bool same_kind(std::size_t a, std::size_t b) const {
+    if ((cells.deck[a] >= 0) == (cells.deck[b] >= 0)) return true;
+    const std::size_t deck = cells.deck[a] >= 0 ? a : b, other = cells.deck[a] >= 0 ? b : a;
+    return cells.above[other] == 0 || high(other) <= high(deck) + level;
   }
   [[nodiscard]] bool compatible(std::size_t a, std::size_t b, bool touching) const {
     if (is_hole(a) || is_hole(b)) return is_hole(a) && is_hole(b);
-    if (!same_deck(a, b)) return false;
+    if (!same_kind(a, b)) return false;
     const float low_a = low(a), low_b = low(b), high_a = high(a), high_b = high(b);
     if (std::max(low_a, low_b) - std::min(high_a, high_b) > step) return false;
     // Upright surfaces have no gaps; what lies flat is seen by a ring here and one there.
@@ -145,8 +149,8 @@ void count_members(const Linker& linker, FieldClusterWorkspace& workspace) {
   const FieldCells& cells = linker.cells;
   const std::size_t n = cells.size();
   workspace.cells_of.assign(n, 0);
-  for (auto* counts : {&workspace.points_of, &workspace.sharp_of, &workspace.smooth_of,
-                       &workspace.above_of})
+  for (auto* counts :
+       {&workspace.points_of, &workspace.sharp_of, &workspace.smooth_of, &workspace.above_of})
     counts->assign(n, 0);
   for (std::size_t slot = 0; slot < n; ++slot) {
     if (!linker.is_member(slot)) continue;
@@ -189,8 +193,12 @@ void number_things(const FieldClusterParams& params, FieldClusterWorkspace& work
 void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& ground,
                          const FieldCells& cells, const FieldClusterParams& params,
                          FieldClusterWorkspace& workspace, Clusters& result) {
-  const Linker linker{grid, ground, cells, static_cast<float>(params.step),
-                      static_cast<float>(params.flat)};
+  const Linker linker{grid,
+                      ground,
+                      cells,
+                      static_cast<float>(params.step),
+                      static_cast<float>(params.flat),
+                      static_cast<float>(params.level)};
   const std::size_t n = grid.observed();
   workspace.parent.resize(n);
   for (std::size_t slot = 0; slot < n; ++slot) {

@@ -31,6 +31,9 @@ constexpr float kSharp = 0.5F;
 constexpr std::size_t kFewestSamples = 8;
 constexpr double kLeastShare = 0.25;
 
+// More than this many say no more: every other is left out, or two of three...
+constexpr std::size_t kMostSamples = 64;
+
 struct Blocks {
   const GridGeometry& geometry;
   int cells;  ///< along a side of a block
@@ -94,14 +97,26 @@ void collect_window(const Blocks& blocks, int row, int column, const GroundAroun
                     RaisedGroundWorkspace& workspace) {
   GroundWindow& window = workspace.window;
   window.clear();
-  for (int i = std::max(row - 1, 0); i <= std::min(row + 1, blocks.rows - 1); ++i) {
-    // The blocks of a row lie one behind the other.
-    const std::size_t from = blocks.at(i, std::max(column - 1, 0));
-    const std::size_t to = blocks.at(i, std::min(column + 1, blocks.columns - 1)) + 1;
-    for (std::int32_t k = workspace.first[from]; k < workspace.first[to]; ++k) {
-      const GroundSample& sample = workspace.samples[static_cast<std::size_t>(k)];
+  const int first_row = std::max(row - 1, 0), last_row = std::min(row + 1, blocks.rows - 1);
+  // The blocks of a row lie one behind the other.
+  const auto begin = [&](int i) {
+    return static_cast<std::size_t>(workspace.first[blocks.at(i, std::max(column - 1, 0))]);
+  };
+  const auto end = [&](int i) {
+    const int last = std::min(column + 1, blocks.columns - 1);
+    return static_cast<std::size_t>(workspace.first[blocks.at(i, last) + 1]);
+  };
+  std::size_t samples = 0;
+  for (int i = first_row; i <= last_row; ++i) samples += end(i) - begin(i);
+  const std::size_t stride = samples / kMostSamples + 1;
+  std::size_t skip = 0;
+  for (int i = first_row; i <= last_row; ++i) {
+    std::size_t k = begin(i) + skip;
+    for (; k < end(i); k += stride) {
+      const GroundSample& sample = workspace.samples[k];
       window.add(sample.x - plane.centre_x, sample.y - plane.centre_y, sample.z, 1.0F);
     }
+    skip = k - end(i);
   }
   window.samples = window.u.size();
   while (window.u.size() % kCellLanes != 0) window.add(0.0F, 0.0F, plane.height, 0.0F);
@@ -330,6 +345,13 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
     ++cells.raised[slot];
   }
   look_at_edges(grid, ground, blocks, workspace, cells);
+}
+
+const GroundAround* ground_around(const GridGeometry& geometry, const RaisedGroundParams& params,
+                                  const RaisedGroundWorkspace& workspace, double x, double y) {
+  CellIndex cell;
+  if (workspace.around.empty() || !geometry.cell_at(x, y, cell)) return nullptr;
+  return &workspace.around[Blocks(geometry, params.block).of(cell)];
 }
 
 }  // namespace mrpt_terrain

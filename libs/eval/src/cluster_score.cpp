@@ -270,7 +270,12 @@ std::vector<ThingRecord> list_things(const PointsView& points, const ScanTruth& 
       record.cluster = overlap->cluster;
     }
     if (record.cluster != kNoCluster) {
-      record.described = clusters[index(record.cluster)].terrain_class;
+      const ClusterDescription& cluster = clusters[index(record.cluster)];
+      record.described = cluster.terrain_class;
+      record.points = cluster.points;
+      record.cells = cluster.cells;
+      record.raised = cluster.raised;
+      record.confidence = cluster.confidence;
       record.of_cluster = sizes.cluster[index(record.cluster)].counted;
       record.swallowed = matching.swallowed[index(record.cluster)];
     }
@@ -289,8 +294,8 @@ std::vector<ThingRecord> list_things(const PointsView& points, const ScanTruth& 
   }
   for (std::size_t c = 0; c < clusters.size(); ++c) {
     if (matching.fate[c] != ClusterFate::kFalse) continue;
-    const Overlap* overlap = largest(
-        sizes.overlaps, [c](const Overlap& each) { return index(each.cluster) == c; });
+    const Overlap* overlap =
+        largest(sizes.overlaps, [c](const Overlap& each) { return index(each.cluster) == c; });
     ThingRecord record;
     record.is_false = true;
     record.cluster = static_cast<std::int32_t>(c);

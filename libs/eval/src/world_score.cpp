@@ -79,6 +79,25 @@ void score_approach(const WorldTask& task, const DrivenWorld& world, Scratch& sc
   }
 }
 
+// Describes consecutive scans about the middle of the drive and follows their things in the map.
+void score_identities(const WorldTask& task, const DrivenWorld& world, Scratch& scratch,
+                      WorldScore& score) {
+  const std::size_t n = std::min(task.follow, world.sweeps);
+  ThingTracker tracker(task.tracking);
+  IdentityHistory history;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t sweep = (world.sweeps - n) / 2 + k;
+    take_scan(world, sweep, task.options, scratch.workspace, scratch.scan);
+    task.describe(scratch.scan.view(), scratch.description);
+    const Description& description = scratch.description;
+    history.add_scan(
+        match_clusters(scratch.scan.points.view(), scratch.scan.truth, description.labels,
+                       description.things, task.rules.clusters),
+        tracker.update(description.things, scratch.scan.truth.T_map_given, world.start_of(sweep)));
+  }
+  score.identities = history.score();
+}
+
 }  // namespace
 
 void WorldScore::add(const WorldScore& other) {
@@ -90,6 +109,7 @@ void WorldScore::add(const WorldScore& other) {
   clusters.add(other.clusters);
   slopes.add(other.slopes);
   potholes.add(other.potholes);
+  identities.add(other.identities);
   things.insert(things.end(), other.things.begin(), other.things.end());
 }
 
@@ -102,6 +122,7 @@ WorldScore score_world(const WorldTask& task) {
     score_scan(task, *world, sweep, scratch, score);
   }
   if (task.approach) score_approach(task, *world, scratch, score);
+  if (task.follow > 0) score_identities(task, *world, scratch, score);
   return score;
 }
 

@@ -90,6 +90,19 @@ void add_slope(Line& line, const Slope& slope) {
   add_uncertainty(line, slope);
 }
 
+/// What only field mode measures.
+void add_field_features(Line& line, const ClusterDescription& thing) {
+  if (!(thing.confidence > 0.0)) {
+    line.empty(11);
+    return;
+  }
+  line.count(thing.raised).number(thing.scatter).number(thing.lowest_step);
+  line.number(thing.highest_step).number(thing.confidence);
+  line.number(thing.box.centre.x).number(thing.box.centre.y).number(thing.box.yaw * kDegrees);
+  line.number(thing.box.length).number(thing.box.width);
+  line.text(thing.identity == 0 ? std::string() : std::to_string(thing.identity));
+}
+
 void add_cluster(Line& line, const ClusterDescription& thing) {
   line.text(name_of(thing.terrain_class)).number(thing.centroid.x).number(thing.centroid.y);
   line.number(thing.min_corner.x).number(thing.min_corner.y);
@@ -99,6 +112,7 @@ void add_cluster(Line& line, const ClusterDescription& thing) {
   line.number(thing.h_min).number(thing.h_max);
   add_roughness(line, thing.roughness);
   add_slope(line, thing.slope);
+  add_field_features(line, thing);
 }
 
 }  // namespace
@@ -108,7 +122,8 @@ void write_clusters_csv_header(std::ostream& out) {
       "scan,stamp,cluster,class,x,y,min_x,min_y,max_x,max_y,cells,points,h_d,h_m,h_f,h_min,h_max,"
       "roughness_status,rough,lambda_0,lambda_1,lambda_2,slope_status,angle_deg,normal_x,normal_y,"
       "normal_z,inliers,iterations,direction_deg,angle_sigma_deg,direction_sigma_deg,range_sigma,"
-      "to_ground_status,to_ground_deg,to_ground_sigma_deg\n";
+      "to_ground_status,to_ground_deg,to_ground_sigma_deg,raised,scatter,lowest_step,highest_step,"
+      "confidence,box_x,box_y,box_yaw_deg,box_length,box_width,identity\n";
   out.write(kHeader.data(), static_cast<std::streamsize>(kHeader.size()));
 }
 

@@ -24,6 +24,7 @@ struct BeamSlopeParams {
   double least_sigma = 0.001;   ///< metres: the noise is never taken to be less
   double least_share = 0.3;     ///< of the cluster's points in cells that the plane explains
   double max_scatter = 0.04;    ///< metres: of the points across the plane, standard deviation
+  double ring_sigma = 0.013;    ///< metres: error of a ring that all its points share
   double max_angle_sigma = 0.03490658503988659;  ///< radians: less certain is not trustworthy
 
   template <class Self, class Visitor>
@@ -47,6 +48,9 @@ struct BeamSlopeParams {
     visit(self.max_scatter,
           ParamInfo{"max_scatter", "", "m", 0.001, 1.0,
                     "standard deviation of the points across the plane above which it is none"});
+    visit(self.ring_sigma,
+          ParamInfo{"ring_sigma", "", "m", 0.0, 1.0,
+                    "standard deviation of an error that all points of a ring share (field mode)"});
     visit(self.max_angle_sigma, ParamInfo{"max_angle_sigma_deg", "", "deg", 0.001, 90.0,
                                           "standard deviation of the angle above which it is not "
                                           "trustworthy"});

@@ -11,6 +11,7 @@
 #include "mrpt_terrain/core/clusters.h"
 #include "mrpt_terrain/core/decks.h"
 #include "mrpt_terrain/core/elevation_grid.h"
+#include "mrpt_terrain/core/face_slope.h"
 #include "mrpt_terrain/core/field_cells.h"
 #include "mrpt_terrain/core/field_clusters.h"
 #include "mrpt_terrain/core/ground.h"
@@ -20,6 +21,7 @@
 #include "mrpt_terrain/core/holes.h"
 #include "mrpt_terrain/core/label_stage.h"
 #include "mrpt_terrain/core/labels.h"
+#include "mrpt_terrain/core/oriented_box.h"
 #include "mrpt_terrain/core/overhangs.h"
 #include "mrpt_terrain/core/raised_ground.h"
 #include "mrpt_terrain/core/roughness.h"
@@ -101,6 +103,16 @@ struct ClusterDescription {
   Position2 centroid;    ///< mean of its points
   Position2 min_corner;  ///< of the cells' bounding rectangle, edges of cells included
   Position2 max_corner;
+  // In field mode only:
+  OrientedBox box;            ///< about its points
+  std::int32_t raised = 0;    ///< of its points: ground that stands out of the ground around
+  double scatter = 0.0;       ///< RMS distance of its points from their best plane, metres
+  double lowest_step = 0.0;   ///< of the steps at its edges, metres; doc/field-mode.md
+  double highest_step = 0.0;  ///< the same; 0 both where no ground was seen beside it
+  double confidence = 0.0;    ///< [0, 1]: that it is a thing, doc/field-mode.md
+  /// Number that it keeps from scan to scan; 0: unknown. `describe` knows no other scans and leaves
+  /// it 0: it is for those who have poses and a `ThingTracker`.
+  std::uint64_t identity = 0;
 };
 
 /// The stages of a description, in the order in which they run.
@@ -152,6 +164,7 @@ struct ClusterSums {
   float high = std::numeric_limits<float>::lowest();  ///< above the ground reference
   float z_low = std::numeric_limits<float>::max();
   float z_high = std::numeric_limits<float>::lowest();
+  std::int32_t raised = 0;  ///< points of raised ground
 };
 
 /// Scratch memory of all stages. Reuse it together with the `Description`: scans of similar size
@@ -167,6 +180,9 @@ struct DescriptionWorkspace {
   ClusterWorkspace clusters;
   SlopeWorkspace slope;
   BeamSlopeWorkspace beam_slope;
+  FaceSlopeWorkspace face_slope;
+  OrientedBoxWorkspace box;
+  std::vector<float> steps;  ///< of one thing, metres
   std::vector<std::uint8_t> slot_wanted;
   LabelWorkspace labels;
   PointSlots point_slots;

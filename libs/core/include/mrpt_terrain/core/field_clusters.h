@@ -19,8 +19,8 @@ struct FieldClusterParams {
   double step = 0.3;           ///< metres: gap in height between cells of one thing
   double flat = 0.2;           ///< metres: cells with more height are linked only if they touch
   double unseen = 1.0;         ///< metres: gap in raised ground where nothing was seen
-  double level = 0.05;         ///< metres: by which the two sides of such a gap may differ in height
-  double sharp = 0.3;          ///< share of sharp edges of a thing that is ground
+  double level = 0.05;  ///< metres: by which the two sides of such a gap may differ in height
+  double sharp = 0.3;   ///< share of sharp edges of a thing that is ground
 
   template <class Self, class Visitor>
   static void visit_params(Self& self, Visitor&& visit) {
@@ -36,8 +36,9 @@ struct FieldClusterParams {
                                "greatest gap in height between cells of one thing"});
     visit(self.flat, ParamInfo{"flat", "", "m", 0.0, 100.0,
                                "cells whose points extend over more height have to touch"});
-    visit(self.unseen, ParamInfo{"unseen", "", "m", 0.0, 10.0,
-                                 "widest gap between cells of raised ground where nothing was seen"});
+    visit(self.unseen,
+          ParamInfo{"unseen", "", "m", 0.0, 10.0,
+                    "widest gap between cells of raised ground where nothing was seen"});
     visit(self.level, ParamInfo{"level", "", "m", 0.0, 10.0,
                                 "by which the heights of two such cells may differ"});
     visit(self.sharp, ParamInfo{"sharp", "", "", 0.0, 1.0,

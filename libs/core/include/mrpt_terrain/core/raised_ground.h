@@ -108,4 +108,10 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
                         const PointSlots& point_slots, const RaisedGroundParams& params,
                         RaisedGroundWorkspace& workspace, FieldCells& cells);
 
+/// The plane of the ground around a place that `find_raised_ground` fitted; null outside the grid.
+[[nodiscard]] const GroundAround* ground_around(const GridGeometry& geometry,
+                                                const RaisedGroundParams& params,
+                                                const RaisedGroundWorkspace& workspace, double x,
+                                                double y);
+
 }  // namespace mrpt_terrain

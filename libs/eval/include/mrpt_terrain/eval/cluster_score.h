@@ -61,20 +61,22 @@ struct ThingRecord {
   std::string family;
   std::uint64_t seed = 0;
   std::size_t sweep = 0;
-  bool is_false = false;             ///< a cluster that is no thing
-  std::int32_t thing = kNoThing;     ///< number of the solid; kNoThing: ground or nothing
-  std::string type;                  ///< of the solid; "": none
+  bool is_false = false;          ///< a cluster that is no thing
+  std::int32_t thing = kNoThing;  ///< number of the solid; kNoThing: ground or nothing
+  std::string type;               ///< of the solid; "": none
   TerrainClass truth = TerrainClass::kNone;
   std::int32_t cluster = kNoCluster;
   TerrainClass described = TerrainClass::kNone;
-  double x = 0.0, y = 0.0;           ///< mean of the counted points, frame of the description
-  std::size_t of_thing = 0;          ///< counted points
+  double x = 0.0, y = 0.0;   ///< mean of the counted points, frame of the description
+  std::size_t of_thing = 0;  ///< counted points
   std::size_t of_cluster = 0;
   std::size_t shared = 0;
-  std::size_t loose = 0;             ///< of the thing: in no cluster and called ground
-  std::size_t dropped = 0;           ///< of the thing: in no cluster and not called ground
-  std::size_t parts = 0;             ///< MatchedThing::parts
-  std::size_t swallowed = 0;         ///< ClusterMatching::swallowed of the cluster
+  std::size_t loose = 0;      ///< of the thing: in no cluster and called ground
+  std::size_t dropped = 0;    ///< of the thing: in no cluster and not called ground
+  std::size_t parts = 0;      ///< MatchedThing::parts
+  std::size_t swallowed = 0;  ///< ClusterMatching::swallowed of the cluster
+  std::int32_t points = 0, cells = 0, raised = 0;  ///< of the cluster, as described
+  double confidence = 0.0;                         ///< of the cluster, as described
   [[nodiscard]] double iou() const;
 };
 

@@ -5,7 +5,9 @@
 #include <functional>
 #include <vector>
 
+#include "mrpt_terrain/core/thing_tracker.h"
 #include "mrpt_terrain/eval/cluster_score.h"
+#include "mrpt_terrain/eval/identity_score.h"
 #include "mrpt_terrain/eval/pothole_score.h"
 #include "mrpt_terrain/eval/slope_score.h"
 #include "mrpt_terrain/eval/support_score.h"
@@ -22,6 +24,7 @@ struct WorldScore {
   ClusterScore clusters;
   SlopeScore slopes;
   PotholeScore potholes;
+  IdentityScore identities;         ///< if `WorldTask::follow`
   std::vector<ThingRecord> things;  ///< if `WorldTask::list_things`
   void add(const WorldScore& other);
 };
@@ -49,9 +52,11 @@ using ScoredScanListener = std::function<void(const ScoredScan& scored)>;
 struct WorldTask {
   const sim::Family& family;
   std::uint64_t seed = 0;
-  std::size_t scans = 8;  ///< spread evenly over the drive
-  bool approach = false;  ///< also look at the approach to holes on the path
+  std::size_t scans = 8;     ///< spread evenly over the drive
+  bool approach = false;     ///< also look at the approach to holes on the path
   bool list_things = false;  ///< fill in WorldScore::things
+  std::size_t follow = 0;    ///< consecutive scans from the middle of the drive for identities
+  TrackingParams tracking;   ///< of identities
   const ScanOptions& options;
   const ScoreRules& rules;
   const Describe& describe;

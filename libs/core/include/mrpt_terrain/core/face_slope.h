@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mrpt_terrain/core/beam_plane.h"
+#include "mrpt_terrain/core/beam_slope.h"
+#include "mrpt_terrain/core/clusters.h"
+#include "mrpt_terrain/core/points.h"
+#include "mrpt_terrain/core/slope.h"
+
+namespace mrpt_terrain {
+
+/// Direction of a beam to a point on the face.
+struct FaceBeam {
+  std::int32_t column = 0;  ///< of directions
+  float elevation = 0.0F;   ///< radians
+  std::int32_t point = 0;   ///< number among the points of the thing
+};
+/// A ring of the sensor on its way from column to column.
+struct FaceRing {
+  float elevation = 0.0F;                          ///< in the last column, radians
+  Eigen::Vector3d pull = Eigen::Vector3d::Zero();  ///< of an error of 1 m on the normal equations
+};
+
+/// Scratch memory of `estimate_face_slope`.
+struct FaceSlopeWorkspace {
+  BeamPoints points;
+  std::vector<float> x, y, z;  ///< of the sample
+  std::vector<FaceBeam> beams;
+  std::vector<FaceRing> rings;
+};
+
+/// Slope of the face of a thing that a wheel could stand on: of all planes no steeper than
+/// `kSteepestFace`, the one that most of its points lie on.
+///
+/// Sample consensus (MSAC) among the thing's own points gives a first plane, Gauss-Newton steps
+/// with noise along the beams (beam_plane.h) make it the most likely one. The sides of a ramp and
+/// what stands on it are left out by Tukey's weights. The covariance is that of the fit, and that
+/// of errors that all points of a ring share (`BeamSlopeParams::ring_sigma`): with two or three
+/// rings on a face they are most of it. \param members points of the thing \param seed, stream of
+/// the sample consensus \return status kNotPlanar where the plane explains less than
+/// `BeamSlopeParams::least_share` of the points or they scatter by more than `max_scatter` about it
+[[nodiscard]] Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins,
+                                        IndexRange members, const BeamSlopeParams& params,
+                                        std::uint64_t seed, std::uint64_t stream,
+                                        FaceSlopeWorkspace& workspace);
+
+/// Radians: 45 deg.
+inline constexpr double kSteepestFace = 0.78539816339744831;
+}  // namespace mrpt_terrain

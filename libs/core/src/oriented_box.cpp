@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/core/oriented_box.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace mrpt_terrain {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+double cross(const Position2& o, const Position2& a, const Position2& b) {
+  return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+// Extreme points in eight directions, counter-clockwise.
+std::array<Position2, 8> extremes(const PointsView& points, IndexRange members) {
+  constexpr std::array<std::array<double, 2>, 8> kDirections{
+      {{{1, 0}}, {{1, 1}}, {{0, 1}}, {{-1, 1}}, {{-1, 0}}, {{-1, -1}}, {{0, -1}}, {{1, -1}}}};
+  std::array<Position2, 8> result;
+  std::array<double, 8> best;
+  best.fill(std::numeric_limits<double>::lowest());
+  for (const std::int32_t item : members) {
+    const auto i = static_cast<std::size_t>(item);
+    const Position2 p{static_cast<double>(points.x[i]), static_cast<double>(points.y[i])};
+    for (std::size_t k = 0; k < 8; ++k) {
+      const double along = kDirections[k][0] * p.x + kDirections[k][1] * p.y;
+      if (along <= best[k]) continue;
+      best[k] = along;
+      result[k] = p;
+    }
+  }
+  return result;
+}
+
+bool is_inside(const std::array<Position2, 8>& octagon, const Position2& p) {
+  for (std::size_t k = 0; k < 8; ++k) {
+    if (cross(octagon[k], octagon[(k + 1) % 8], p) <= 0.0 &&
+        !(octagon[k].x == octagon[(k + 1) % 8].x && octagon[k].y == octagon[(k + 1) % 8].y))
+      return false;
+  }
+  return true;
+}
+
+// Andrew's monotone chain, counter-clockwise; no three points in a row on a line.
+void find_hull(std::vector<Position2>& points, std::vector<Position2>& hull) {
+  std::sort(points.begin(), points.end(), [](const Position2& a, const Position2& b) {
+    return a.x != b.x ? a.x < b.x : a.y < b.y;
+  });
+  hull.clear();
+  const auto add = [&hull](const Position2& p, std::size_t least) {
+    while (hull.size() >= least + 2 && cross(hull[hull.size() - 2], hull.back(), p) <= 0.0)
+      hull.pop_back();
+    hull.push_back(p);
+  };
+  for (const Position2& p : points) add(p, 0);
+  const std::size_t lower = hull.size() - 1;
+  for (auto p = points.rbegin() + 1; p < points.rend(); ++p) add(*p, lower);
+  if (hull.size() > 1) hull.pop_back();
+}
+
+// The rectangle with a side along (c, s).
+OrientedBox rectangle_along(const std::vector<Position2>& hull, double c, double s) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  double low_u = kMost, high_u = -kMost, low_v = kMost, high_v = -kMost;
+  for (const Position2& p : hull) {
+    const double u = c * p.x + s * p.y, v = c * p.y - s * p.x;
+    low_u = std::min(low_u, u);
+    high_u = std::max(high_u, u);
+    low_v = std::min(low_v, v);
+    high_v = std::max(high_v, v);
+  }
+  const double u = 0.5 * (low_u + high_u), v = 0.5 * (low_v + high_v);
+  OrientedBox box;
+  box.centre = {c * u - s * v, s * u + c * v};
+  box.yaw = std::atan2(s, c);
+  box.length = high_u - low_u;
+  box.width = high_v - low_v;
+  return box;
+}
+
+void turn_to_longer_side(OrientedBox& box) {
+  if (box.width > box.length) {
+    std::swap(box.width, box.length);
+    box.yaw += 0.5 * kPi;
+  }
+  while (box.yaw > 0.5 * kPi) box.yaw -= kPi;
+  while (box.yaw <= -0.5 * kPi) box.yaw += kPi;
+}
+
+}  // namespace
+
+OrientedBox box_around(const PointsView& points, IndexRange members,
+                       OrientedBoxWorkspace& workspace) {
+  OrientedBox best;
+  if (members.size() == 0) return best;
+  const std::array<Position2, 8> octagon = extremes(points, members);
+  workspace.candidates.assign(octagon.begin(), octagon.end());
+  float low = std::numeric_limits<float>::max(), high = std::numeric_limits<float>::lowest();
+  for (const std::int32_t item : members) {
+    const auto i = static_cast<std::size_t>(item);
+    low = std::min(low, points.z[i]);
+    high = std::max(high, points.z[i]);
+    const Position2 p{static_cast<double>(points.x[i]), static_cast<double>(points.y[i])};
+    if (!is_inside(octagon, p)) workspace.candidates.push_back(p);
+  }
+  find_hull(workspace.candidates, workspace.hull);
+  const std::vector<Position2>& hull = workspace.hull;
+  best = rectangle_along(hull, 1.0, 0.0);
+  double least = hull.size() < 2 ? 0.0 : std::numeric_limits<double>::max();
+  for (std::size_t k = 0; k < hull.size() && hull.size() > 1; ++k) {
+    const Position2& p = hull[k];
+    const Position2& q = hull[(k + 1) % hull.size()];
+    const double length = std::hypot(q.x - p.x, q.y - p.y);
+    if (!(length > 0.0)) continue;
+    const OrientedBox box = rectangle_along(hull, (q.x - p.x) / length, (q.y - p.y) / length);
+    if (box.length * box.width >= least) continue;
+    least = box.length * box.width;
+    best = box;
+  }
+  turn_to_longer_side(best);
+  best.low = low;
+  best.high = high;
+  return best;
+}
+
+}  // namespace mrpt_terrain

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/core/face_slope.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "mrpt_terrain/core/random.h"
+
+namespace mrpt_terrain {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr std::array<float, 3> kOrigin{0.0F, 0.0F, 1.2F};
+
+double normal_deviate(RandomGenerator& random) {
+  double sum = -6.0;  // of twelve: variance 1
+  for (int k = 0; k < 12; ++k) sum += random.uniform();
+  return sum;
+}
+
+/// What rings of a sensor 1.2 m up see of a face about (5, 0) that rises along `direction`: beams 1
+/// deg apart, columns 0.3 deg apart, with noise of every point and an error of every ring.
+struct FaceScan {
+  double angle, direction;
+  double half = 0.8;  ///< metres from the middle in x and y
+  double noise = 0.015, ring_noise = 0.0;
+
+  [[nodiscard]] Points seen(RandomGenerator& random) const {
+    Points points;
+    const double gradient = std::tan(angle);
+    const double gx = gradient * std::cos(direction), gy = gradient * std::sin(direction);
+    for (int ring = 0; ring < 40; ++ring) {
+      const double error = ring_noise * normal_deviate(random);
+      const double e = (-30.0 + ring) * kDegree;
+      for (int column = -60; column <= 60; ++column) {
+        const double a = 0.3 * kDegree * column;
+        const double dx = std::cos(e) * std::cos(a), dy = std::cos(e) * std::sin(a);
+        const double dz = std::sin(e);
+        // z = 0.3 + gx (x - 5) + gy y along the beam.
+        const double range = (0.3 - 5.0 * gx - 1.2) / (dz - gx * dx - gy * dy);
+        if (!(range > 0.0) || std::abs(range * dx - 5.0) > half || std::abs(range * dy) > half)
+          continue;
+        const double r = range + error + noise * normal_deviate(random);
+        points.push_back(static_cast<float>(r * dx), static_cast<float>(r * dy),
+                         static_cast<float>(1.2 + r * dz));
+      }
+    }
+    return points;
+  }
+};
+
+Slope slope_of(const Points& points, const BeamSlopeParams& params = {}) {
+  std::vector<std::int32_t> all(points.size());
+  std::iota(all.begin(), all.end(), 0);
+  FaceSlopeWorkspace workspace;
+  return estimate_face_slope(points.view(), {&kOrigin, nullptr}, all_of(all), params, 1, 0,
+                             workspace);
+}
+
+TEST(FaceSlope, ExactFacesHaveTheirAngleAndDirection) {
+  for (const double angle : {6.0, 12.0, 20.0}) {
+    for (const double direction : {0.0, 40.0, 90.0, -80.0}) {
+      RandomGenerator random(91, 0);
+      const Slope slope =
+          slope_of(FaceScan{angle * kDegree, direction * kDegree, 0.8, 0.0, 0.0}.seen(random));
+      ASSERT_EQ(slope.status, FeatureStatus::kOk) << angle << ' ' << direction;
+      EXPECT_NEAR(slope.angle, angle * kDegree, 1e-4) << angle << ' ' << direction;
+      EXPECT_NEAR(std::remainder(slope.direction - direction * kDegree, 2 * M_PI), 0.0, 1e-3);
+    }
+  }
+}
+
+// Of 400 scans, twice the stated deviation covers 95.4 % if it is right: 381 or 382, give or take
+// 4.2. With errors of rings and without, and never much less than it says.
+TEST(FaceSlope, StatedDeviationsHold) {
+  for (const double ring_noise : {0.0, 0.013}) {
+    BeamSlopeParams params;
+    params.ring_sigma = ring_noise;
+    int angle_in = 0, direction_in = 0, measured = 0;
+    for (std::uint64_t trial = 0; trial < 400; ++trial) {
+      RandomGenerator random(92, trial);
+      const double direction = M_PI * (random.uniform() - 0.5);
+      const Slope slope = slope_of(
+          FaceScan{14.0 * kDegree, direction, 0.8, 0.015, ring_noise}.seen(random), params);
+      if (slope.status != FeatureStatus::kOk) continue;
+      ++measured;
+      angle_in += std::abs(slope.angle - 14.0 * kDegree) <= 2.0 * slope.angle_sigma ? 1 : 0;
+      direction_in += std::abs(std::remainder(slope.direction - direction, 2.0 * M_PI)) <=
+                              2.0 * slope.direction_sigma
+                          ? 1
+                          : 0;
+    }
+    EXPECT_GT(measured, 380) << ring_noise;
+    EXPECT_NEAR(angle_in / static_cast<double>(measured), 0.954, 0.03) << ring_noise;
+    EXPECT_NEAR(direction_in / static_cast<double>(measured), 0.954, 0.03) << ring_noise;
+  }
+}
+
+// The sides of a ramp have a third of its points.
+TEST(FaceSlope, SidesOfARampAreNotItsFace) {
+  RandomGenerator random(93, 0);
+  Points points = FaceScan{15.0 * kDegree, 0.0}.seen(random);
+  const std::size_t n = points.size();
+  for (std::size_t k = 0; k < n / 2; ++k) {
+    points.push_back(static_cast<float>(4.2 + 1.6 * random.uniform()), 0.8F,
+                     static_cast<float>(0.5 * random.uniform()));
+  }
+  const Slope slope = slope_of(points);
+  ASSERT_EQ(slope.status, FeatureStatus::kOk);
+  EXPECT_NEAR(slope.angle, 15.0 * kDegree, 1.5 * kDegree);
+  EXPECT_LT(slope.inliers, static_cast<int>(1.15 * static_cast<double>(n)));
+}
+
+TEST(FaceSlope, WhatIsNoFaceHasAStatus) {
+  RandomGenerator random(94, 0);
+  Points wall, ring, heap;
+  for (int k = 0; k < 400; ++k) {
+    wall.push_back(5.0F + 0.015F * static_cast<float>(normal_deviate(random)),
+                   static_cast<float>(2.0 * random.uniform()),
+                   static_cast<float>(1.5 * random.uniform()));
+    ring.push_back(5.0F + 0.015F * static_cast<float>(normal_deviate(random)),
+                   static_cast<float>(2.0 * random.uniform()) - 1.0F, 0.4F);
+    heap.push_back(5.0F + static_cast<float>(random.uniform()),
+                   static_cast<float>(random.uniform()), static_cast<float>(random.uniform()));
+  }
+  EXPECT_EQ(slope_of(wall).status, FeatureStatus::kNotPlanar);
+  EXPECT_NE(slope_of(ring).status, FeatureStatus::kOk) << "a single ring shows no slope";
+  EXPECT_EQ(slope_of(heap,
+                     [] {
+                       BeamSlopeParams params;
+                       params.least_share = 0.5;
+                       return params;
+                     }())
+                .status,
+            FeatureStatus::kNotPlanar);
+  EXPECT_EQ(slope_of(Points{}).status, FeatureStatus::kTooFewPoints);
+  FaceSlopeWorkspace workspace;
+  const std::vector<std::int32_t> all{0, 1, 2};
+  EXPECT_EQ(estimate_face_slope(wall.view(), {}, all_of(all), {}, 1, 0, workspace).status,
+            FeatureStatus::kNoOrigin);
+}
+
+}  // namespace
+}  // namespace mrpt_terrain
