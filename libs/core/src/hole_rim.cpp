@@ -4,7 +4,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace mrpt_terrain {
 namespace {
@@ -40,17 +42,18 @@ template <int kTerms>
 bool fit_round(const std::vector<HolePoint>& points, const Selection& selection, RimSurface& rim) {
   using Matrix = Eigen::Matrix<double, kTerms, kTerms>;
   using Vector = Eigen::Matrix<double, kTerms, 1>;
-  Matrix a = Matrix::Zero();
+  Matrix a = Matrix::Zero();  // its lower triangle, which is all that the decomposition reads
   Vector b = Vector::Zero();
   int n = 0;
   for (const HolePoint& p : points) {
     if (!selection.takes(p)) continue;
-    const double u = p.x - rim.x, v = p.y - rim.y;
-    Eigen::Matrix<double, 6, 1> terms;
-    terms << 1.0, u, v, u * u, u * v, v * v;
-    const Vector t = terms.head<kTerms>();
-    a += p.weight * t * t.transpose();
-    b += p.weight * (p.z - rim.z) * t;
+    const double u = p.x - rim.x, v = p.y - rim.y, z = p.z - rim.z;
+    const std::array<double, 6> terms{1.0, u, v, u * u, u * v, v * v};
+    for (int j = 0; j < kTerms; ++j) {
+      const double weighted = p.weight * terms[static_cast<std::size_t>(j)];
+      b(j) += weighted * z;
+      for (int i = j; i < kTerms; ++i) a(i, j) += weighted * terms[static_cast<std::size_t>(i)];
+    }
     ++n;
   }
   if (n < kFewestRimPoints) return false;
