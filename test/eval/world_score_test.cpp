@@ -262,7 +262,7 @@ WorldScore scored(const std::string& name, const ScoredScanListener& listener = 
   const Describe method = [&](const ScanView& scan, Description& description) {
     describe(scan, params, workspace, description);
   };
-  return score_world({wanted, 2, 3, true, scan_options, rules, method, listener});
+  return score_world({wanted, 2, 3, true, false, 0, {}, scan_options, rules, method, listener});
 }
 
 TEST(WorldScore, SameWorldSameScoreAndSumsAdd) {
