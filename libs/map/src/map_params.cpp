@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 
 #include "mrpt_terrain/params/document.h"
 #include "mrpt_terrain/params/ini.h"
@@ -93,6 +94,37 @@ params::Document document_of(const mrpt::config::CConfigFileBase& config,
   return document;
 }
 
+/// Keys that maps were stored with and that mean nothing any more.
+struct RetiredKey {
+  const char* section;
+  const char* key;
+};
+constexpr RetiredKey kRetiredKeys[] = {{"decks", "bent"}, {"holes", "rim_sigma"}};
+
+void drop_retired_keys(const std::string& prefix, params::Document& document) {
+  for (params::SectionText& section : document.sections) {
+    const auto is_retired = [&](const params::KeyText& text) {
+      return std::any_of(
+          std::begin(kRetiredKeys), std::end(kRetiredKeys), [&](const RetiredKey& retired) {
+            return section.name == prefix + "_" + retired.section && text.key == retired.key;
+          });
+    };
+    section.keys.erase(std::remove_if(section.keys.begin(), section.keys.end(), is_retired),
+                       section.keys.end());
+  }
+}
+
+void load(const params::Document& document, const std::string& source, const std::string& prefix,
+          MapParams& params) {
+  MapParams loaded = params;
+  GenericParams generic;
+  std::vector<Section> sections = map_sections(prefix, loaded);
+  append_fields(generic, sections.front());
+  params::assign_all(document, sections);
+  check_together(loaded, source + ": [" + prefix + "_...]");
+  params = loaded;
+}
+
 }  // namespace
 
 FusionParams fusion_of(const MapParams& params) {
@@ -121,13 +153,14 @@ std::vector<Section> map_sections(const std::string& prefix, MapParams& params) 
 
 void load_map_params(const mrpt::config::CConfigFileBase& config, const std::string& prefix,
                      MapParams& params) {
-  MapParams loaded = params;
-  GenericParams generic;
-  std::vector<Section> sections = map_sections(prefix, loaded);
-  append_fields(generic, sections.front());
-  params::assign_all(document_of(config, prefix), sections);
-  check_together(loaded, source_of(config) + ": [" + prefix + "_...]");
-  params = loaded;
+  load(document_of(config, prefix), source_of(config), prefix, params);
+}
+
+void load_stored_map_params(const mrpt::config::CConfigFileBase& config, const std::string& prefix,
+                            MapParams& params) {
+  params::Document document = document_of(config, prefix);
+  drop_retired_keys(prefix, document);
+  load(document, source_of(config), prefix, params);
 }
 
 void check_together(const MapParams& params, const std::string& source) {

@@ -52,7 +52,7 @@ MapParams params_of(const std::string& text) {
   mrpt::config::CConfigFileMemory config;
   config.setContent(text);
   MapParams params;
-  load_map_params(config, kPrefix, params);
+  load_stored_map_params(config, kPrefix, params);
   return params;
 }
 

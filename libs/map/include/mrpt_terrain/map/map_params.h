@@ -152,6 +152,11 @@ struct MapParams {
 void load_map_params(const mrpt::config::CConfigFileBase& config, const std::string& prefix,
                      MapParams& params);
 
+/// The same of what a map was stored with, perhaps by an older version: keys that have been given up
+/// since are passed over.
+void load_stored_map_params(const mrpt::config::CConfigFileBase& config, const std::string& prefix,
+                            MapParams& params);
+
 /// Refuses values that are each permitted but not together. Throws params::ParameterError.
 /// \param source beginning of the messages
 void check_together(const MapParams& params, const std::string& source);
