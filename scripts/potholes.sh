@@ -20,7 +20,8 @@ TEXT
 potholes_of() {
   awk -F, 'NR > 1 && $4 == "pothole" {
     a = $9 - $7; b = $10 - $8
-    printf "%d %d %.2f %.2f %.2f %.2f %.3f %d\n", $1, $3, $5, $6, a > b ? a : b, a > b ? b : a, $13, $12
+    length_m = (a > b) ? a : b; width_m = (a > b) ? b : a
+    printf("%d %d %.2f %.2f %.2f %.2f %.3f %d\n", $1, $3, $5, $6, length_m, width_m, $13, $12)
   }' "$1"
 }
 

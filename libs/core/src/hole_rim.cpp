@@ -7,6 +7,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
+
+#include "lanes.h"
+#include "wide_registers.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -24,45 +28,133 @@ constexpr double kHold = 30.0;
 
 bool is_around(const HolePoint& p) { return p.zone == HoleZone::kRim || p.zone == HoleZone::kNear; }
 
-// Whether a point counts in a fit: in the first round those that are in cells away from the hole.
-struct Selection {
-  const RimSurface& rim;
-  double band;
-  bool first, away_only;
-  [[nodiscard]] bool takes(const HolePoint& p) const {
-    if (!is_around(p)) return false;
-    if (first) return !away_only || p.zone == HoleZone::kRim;
-    const double low = rim.height_at(p.x, p.y) - p.z;
-    return low <= band && low >= -kUpperBand * band;
+/// Weighted sums of u^p v^q, p + q <= 4, and of z times those of p + q <= 2, in the order of
+/// `at`.
+struct PowerSums {
+  static constexpr std::size_t kMoments = 15, kHeights = 6;
+  std::array<double, kMoments> moment{};
+  std::array<double, kHeights> height{};
+  double points = 0.0;
+
+  static constexpr std::size_t at(int p, int q) {
+    return static_cast<std::size_t>((p + q) * (p + q + 1) / 2 + q);
   }
 };
 
-// One round: the surface through the points that the one before selects.
+MRPT_TERRAIN_LANES void load_rim(const RimPoints& points, std::size_t i, DoubleLanes& u,
+                                 DoubleLanes& v, DoubleLanes& z) {
+  load_from(points.u.data() + i, u);
+  load_from(points.v.data() + i, v);
+  load_from(points.z.data() + i, z);
+}
+
+// How far the points lie below the surface, which is about the same origin as they are.
+MRPT_TERRAIN_LANES void depths_below(const RimSurface& rim, const DoubleLanes& u,
+                                     const DoubleLanes& v, const DoubleLanes& z, DoubleLanes& low) {
+  low = rim.gradient_x * u + rim.gradient_y * v + rim.bend_xx * u * u + rim.bend_xy * u * v +
+        rim.bend_yy * v * v - z;
+}
+
+MRPT_TERRAIN_LANES double total(const DoubleLanes& lanes) {
+  double value[kCellLanes];
+  std::memcpy(value, &lanes, sizeof(value));
+  double sum = 0.0;
+  for (const double lane : value) sum += lane;
+  return sum;
+}
+
+// Sums over the points that count: those of weight `first` in the first round, then those within
+// the band about the surface. `rim` has z = 0 at the origin; `height` is its height there.
+MRPT_TERRAIN_WIDE_REGISTERS
+void sum_rim(const RimPoints& points, const RimSurface& rim, double height, double band,
+             bool first_round, PowerSums& sums) {
+  DoubleLanes moment[PowerSums::kMoments] = {}, heights[PowerSums::kHeights] = {}, count = {};
+  for (std::size_t i = 0; i < points.u.size(); i += kCellLanes) {
+    DoubleLanes u, v, z, low, weight, first;
+    load_rim(points, i, u, v, z);
+    load_from(points.weight.data() + i, weight);
+    load_from(points.first.data() + i, first);
+    depths_below(rim, u, v, z, low);
+    low += height;
+    const DoubleLanes none = weight * 0.0;
+    const DoubleLanes within = low <= band ? (low >= -kUpperBand * band ? weight : none) : none;
+    const DoubleLanes w = first_round ? first : within;
+    count += w > 0.0 ? none + 1.0 : none;
+    const DoubleLanes wu = w * u, wv = w * v;
+    const DoubleLanes wuu = wu * u, wuv = wu * v, wvv = wv * v;
+    const DoubleLanes wuuu = wuu * u, wuuv = wuu * v, wuvv = wuv * v, wvvv = wvv * v;
+    moment[0] += w;
+    moment[1] += wu;
+    moment[2] += wv;
+    moment[3] += wuu;
+    moment[4] += wuv;
+    moment[5] += wvv;
+    moment[6] += wuuu;
+    moment[7] += wuuv;
+    moment[8] += wuvv;
+    moment[9] += wvvv;
+    moment[10] += wuuu * u;
+    moment[11] += wuuu * v;
+    moment[12] += wuuv * v;
+    moment[13] += wuvv * v;
+    moment[14] += wvvv * v;
+    heights[0] += w * z;
+    heights[1] += wu * z;
+    heights[2] += wv * z;
+    heights[3] += wuu * z;
+    heights[4] += wuv * z;
+    heights[5] += wvv * z;
+  }
+  for (std::size_t k = 0; k < PowerSums::kMoments; ++k) sums.moment[k] = total(moment[k]);
+  for (std::size_t k = 0; k < PowerSums::kHeights; ++k) sums.height[k] = total(heights[k]);
+  sums.points = total(count);
+}
+
+// Weighted squares of the depths of the points within the band, their weights and their number.
+MRPT_TERRAIN_WIDE_REGISTERS
+void sum_squares(const RimPoints& points, const RimSurface& rim, double height, double band,
+                 double& squares, double& weights, double& count) {
+  DoubleLanes square_lanes = {}, weight_lanes = {}, count_lanes = {};
+  for (std::size_t i = 0; i < points.u.size(); i += kCellLanes) {
+    DoubleLanes u, v, z, low, weight;
+    load_rim(points, i, u, v, z);
+    load_from(points.weight.data() + i, weight);
+    depths_below(rim, u, v, z, low);
+    low += height;
+    const DoubleLanes none = weight * 0.0;
+    const DoubleLanes w = low <= band ? (low >= -kUpperBand * band ? weight : none) : none;
+    square_lanes += w * low * low;
+    weight_lanes += w;
+    count_lanes += w > 0.0 ? none + 1.0 : none;
+  }
+  squares = total(square_lanes);
+  weights = total(weight_lanes);
+  count = total(count_lanes);
+}
+
+// One round: the surface of least squares through the points of the sums.
+// \param[out] height of the surface at the origin
 template <int kTerms>
-bool fit_round(const std::vector<HolePoint>& points, const Selection& selection, RimSurface& rim) {
+bool fit_round(const PowerSums& sums, RimSurface& rim, double& height) {
   using Matrix = Eigen::Matrix<double, kTerms, kTerms>;
   using Vector = Eigen::Matrix<double, kTerms, 1>;
-  Matrix a = Matrix::Zero();  // its lower triangle, which is all that the decomposition reads
-  Vector b = Vector::Zero();
-  int n = 0;
-  for (const HolePoint& p : points) {
-    if (!selection.takes(p)) continue;
-    const double u = p.x - rim.x, v = p.y - rim.y, z = p.z - rim.z;
-    const std::array<double, 6> terms{1.0, u, v, u * u, u * v, v * v};
+  constexpr int kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};
+  if (sums.points < kFewestRimPoints) return false;
+  Matrix a;
+  Vector b;
+  for (int i = 0; i < kTerms; ++i) {
+    b(i) = sums.height[PowerSums::at(kPowers[i][0], kPowers[i][1])];
     for (int j = 0; j < kTerms; ++j) {
-      const double weighted = p.weight * terms[static_cast<std::size_t>(j)];
-      b(j) += weighted * z;
-      for (int i = j; i < kTerms; ++i) a(i, j) += weighted * terms[static_cast<std::size_t>(i)];
+      a(i, j) =
+          sums.moment[PowerSums::at(kPowers[i][0] + kPowers[j][0], kPowers[i][1] + kPowers[j][1])];
     }
-    ++n;
   }
-  if (n < kFewestRimPoints) return false;
   for (int k = 3; k < kTerms; ++k) a(k, k) += kHold;
   const Eigen::LDLT<Matrix> ldlt(a);
   const Vector d = ldlt.vectorD();
   if (!(d.minCoeff() > 1e-9 * d.maxCoeff())) return false;
   const Vector x = ldlt.solve(b);
-  rim.z += x(0);
+  height = x(0);
   rim.gradient_x = x(1);
   rim.gradient_y = x(2);
   if constexpr (kTerms == 6) {
@@ -73,18 +165,12 @@ bool fit_round(const std::vector<HolePoint>& points, const Selection& selection,
   return true;
 }
 
-double spread_of(const std::vector<HolePoint>& points, const Selection& selection, int terms) {
-  double squares = 0.0, weights = 0.0;
-  int n = 0;
-  for (const HolePoint& p : points) {
-    if (!selection.takes(p)) continue;
-    const double low = selection.rim.height_at(p.x, p.y) - p.z;
-    squares += p.weight * low * low;
-    weights += p.weight;
-    ++n;
-  }
+double spread_of(const RimPoints& points, const RimSurface& rim, double height, double band,
+                 int terms) {
+  double squares = 0.0, weights = 0.0, n = 0.0;
+  sum_squares(points, rim, height, band, squares, weights, n);
   if (n <= terms) return 0.0;
-  return std::sqrt(squares / (weights * (1.0 - static_cast<double>(terms) / n)));
+  return std::sqrt(squares / (weights * (1.0 - terms / n)));
 }
 
 // Puts the origin of the surface into the mean of the points; returns how many are in cells away
@@ -109,20 +195,35 @@ int start(const std::vector<HolePoint>& points, RimSurface& rim) {
   return static_cast<int>(away);
 }
 
+// The points around about the origin of the surface, and some of no weight for the lanes that are
+// left over.
+void take_around(const std::vector<HolePoint>& points, const RimSurface& rim, bool away_only,
+                 RimPoints& around) {
+  around.clear();
+  for (const HolePoint& p : points) {
+    if (!is_around(p)) continue;
+    const bool first = !away_only || p.zone == HoleZone::kRim;
+    around.add(p.x - rim.x, p.y - rim.y, p.z - rim.z, p.weight, first);
+  }
+  while (around.u.size() % kCellLanes != 0) around.add(0.0, 0.0, 0.0, 0.0, false);
+}
+
 }  // namespace
 
-bool fit_rim(const std::vector<HolePoint>& points, double low, RimSurface& rim) {
+bool fit_rim(const std::vector<HolePoint>& points, double low, RimPoints& scratch,
+             RimSurface& rim) {
   const bool away_only = start(points, rim) >= kFewestRimPoints;
-  double band = low;
+  take_around(points, rim, away_only, scratch);
+  double band = low, height = 0.0;
   for (int round = 0; round < kRounds; ++round) {
     const bool plane = round < kPlaneRounds;
-    const RimSurface before = rim;
-    const Selection selection{before, band, round == 0, away_only};
-    if (!(plane ? fit_round<3>(points, selection, rim) : fit_round<6>(points, selection, rim)))
-      return false;
-    rim.sigma = spread_of(points, {rim, band, false, away_only}, plane ? 3 : 6);
+    PowerSums sums;
+    sum_rim(scratch, rim, height, band, round == 0, sums);
+    if (!(plane ? fit_round<3>(sums, rim, height) : fit_round<6>(sums, rim, height))) return false;
+    rim.sigma = spread_of(scratch, rim, height, band, plane ? 3 : 6);
     band = std::clamp(kOutlier * rim.sigma, std::min(kLeastBand, low), low);
   }
+  rim.z += height;
   return true;
 }
 

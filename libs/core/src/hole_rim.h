@@ -26,7 +26,9 @@ struct RimSurface {
 /// repeatedly without those that lie more than 2.5 standard deviations below it. Bending is held
 /// towards 0.
 /// \param low metres: points deeper than this never count
+/// \param scratch overwritten; keeps its memory
 /// \return false if there are fewer than eight points, or they do not span a plane
-[[nodiscard]] bool fit_rim(const std::vector<HolePoint>& points, double low, RimSurface& rim);
+[[nodiscard]] bool fit_rim(const std::vector<HolePoint>& points, double low, RimPoints& scratch,
+                           RimSurface& rim);
 
 }  // namespace mrpt_terrain

@@ -312,7 +312,8 @@ void weigh_points(HoleCase& hole) {
 // Fits the rim, and measures the depth that a fifth of the floor's points exceed.
 bool measure_depth(HoleCase& hole) {
   weigh_points(hole);
-  if (!fit_rim(hole.workspace.points, hole.params.least_depth, hole.rim)) return false;
+  if (!fit_rim(hole.workspace.points, hole.params.least_depth, hole.workspace.rim_points, hole.rim))
+    return false;
   std::vector<float>& depths = hole.workspace.values;
   depths.clear();
   for (HolePoint& p : hole.workspace.points) {

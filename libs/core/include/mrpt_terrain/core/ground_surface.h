@@ -22,16 +22,16 @@ struct GroundSurfaceParams {
   double cell_size = 0.4;  ///< of the finest level
   double max_tilt = 0.3490658503988659;  ///< of the ground under the robot in its frame, radians
   double max_offset = 0.6;               ///< of the ground under the robot from z = 0
-  double low_band = 0.06;      ///< points this far above the lowest of a cell give its low height
-  double low_part = 0.4;       ///< points this far above the lowest of a cell tell how rough it is
-  double tolerance = 0.05;     ///< of low heights above the reference, on every level
-  double bend = 0.12;          ///< the same per metre of a level's cell: how far ground rises in it
-  double rough_bend = 0.4;     ///< share of `bend` that rough cells are given
-  double dip = 2.0;            ///< tolerance of heights below the reference over that above
-  double low_weight = 20.0;    ///< weight of a low height below the reference over one above
+  double low_band = 0.06;    ///< points this far above the lowest of a cell give its low height
+  double low_part = 0.4;     ///< points this far above the lowest of a cell tell how rough it is
+  double tolerance = 0.05;   ///< of low heights above the reference, on every level
+  double bend = 0.12;        ///< the same per metre of a level's cell: how far ground rises in it
+  double rough_bend = 0.4;   ///< share of `bend` that rough cells are given
+  double dip = 2.0;          ///< tolerance of heights below the reference over that above
+  double low_weight = 20.0;  ///< weight of a low height below the reference over one above
   double smooth_sigma = 0.035;  ///< roughness at which a cell counts half
-  double rough_weight = 0.8;   ///< how little rough cells count between smooth ones
-  double hold = 1.0;           ///< weight of the coarser level, in cells
+  double rough_weight = 0.8;    ///< how little rough cells count between smooth ones
+  double hold = 1.0;            ///< weight of the coarser level, in cells
 
   template <class Self, class Visitor>
   static void visit_params(Self& self, Visitor&& visit) {

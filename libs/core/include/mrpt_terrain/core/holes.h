@@ -109,6 +109,24 @@ struct RingPoint {
   bool has_before;            ///< on the same ring
 };
 
+/// Points around a hole for the fit of its rim, about some origin; metres.
+struct RimPoints {
+  std::vector<double> u, v, z;
+  std::vector<double> weight;
+  std::vector<double> first;  ///< weight in the first round
+
+  void clear() {
+    for (auto* values : {&u, &v, &z, &weight, &first}) values->clear();
+  }
+  void add(double pu, double pv, double pz, double w, bool in_first) {
+    u.push_back(pu);
+    v.push_back(pv);
+    z.push_back(pz);
+    weight.push_back(w);
+    first.push_back(in_first ? w : 0.0);
+  }
+};
+
 /// Scratch memory of `find_holes`.
 struct HoleWorkspace {
   std::vector<RimSums> sums, around;    ///< per cell of the rim's level
@@ -119,9 +137,10 @@ struct HoleWorkspace {
   std::vector<std::int32_t> members;    ///< slots of one hole
   std::vector<std::int32_t> deep, all;  ///< per slot: deep points and points, where looked at
   std::vector<HolePoint> points;        ///< in and around the members
-  std::vector<RingPoint> rings;         ///< the same points by azimuth
-  std::vector<float> values;            ///< for medians and the like
-  std::vector<std::uint8_t> stray;      ///< per point of the scan: its own beam speaks against it
+  RimPoints rim_points;
+  std::vector<RingPoint> rings;     ///< the same points by azimuth
+  std::vector<float> values;        ///< for medians and the like
+  std::vector<std::uint8_t> stray;  ///< per point of the scan: its own beam speaks against it
 };
 
 /// What holes are looked for in; all borrowed.

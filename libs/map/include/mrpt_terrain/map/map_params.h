@@ -152,8 +152,8 @@ struct MapParams {
 void load_map_params(const mrpt::config::CConfigFileBase& config, const std::string& prefix,
                      MapParams& params);
 
-/// The same of what a map was stored with, perhaps by an older version: keys that have been given up
-/// since are passed over.
+/// The same of what a map was stored with, perhaps by an older version: keys that have been given
+/// up since are passed over.
 void load_stored_map_params(const mrpt::config::CConfigFileBase& config, const std::string& prefix,
                             MapParams& params);
 
