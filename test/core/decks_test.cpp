@@ -194,7 +194,8 @@ TEST(Decks, RubbleIsNone) {
 
 TEST(Decks, TallCellsAreNone) {
   World world(level(4.0, 1.0, 0.17));
-  for (std::size_t i = 0; i < world.points.size(); i += 3) {
+  const std::size_t n = world.points.size();
+  for (std::size_t i = 0; i < n; i += 3) {
     if (world.field.support[i] == Support::kAbove)
       world.add(world.points.view().x[i], world.points.view().y[i], 0.5, 0.0);
   }

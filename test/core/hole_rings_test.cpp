@@ -100,8 +100,9 @@ TEST(HoleRim, LowPointsDoNotCount) {
     points.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), k, 0,
                       1.0F, 0.0F, low ? HoleZone::kNear : HoleZone::kRim});
   }
+  RimPoints scratch;
   RimSurface rim;
-  ASSERT_TRUE(fit_rim(points, 0.03, rim));
+  ASSERT_TRUE(fit_rim(points, 0.03, scratch, rim));
   // Three standard errors of a mean of 600 points, and of gradients.
   EXPECT_NEAR(rim.height_at(0.0, 0.0), 0.3, 0.0015);
   EXPECT_NEAR(rim.height_at(0.5, 0.5) - rim.height_at(-0.5, -0.5), 0.05, 0.003);
@@ -118,26 +119,28 @@ TEST(HoleRim, FollowsGroundThatBends) {
     points.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(0.1 * x * x),
                       k, 0, 1.0F, 0.0F, HoleZone::kRim});
   }
+  RimPoints scratch;
   RimSurface rim;
-  ASSERT_TRUE(fit_rim(points, 0.2, rim));
+  ASSERT_TRUE(fit_rim(points, 0.2, scratch, rim));
   EXPECT_NEAR(rim.bend_xx, 0.1 / (1.0 + 30.0 / (4000 * 4.0 / 45.0)), 0.005);
   EXPECT_NEAR(rim.bend_yy, 0.0, 0.005);
 }
 
 TEST(HoleRim, TooFewPointsOrALineAreNoSurface) {
   std::vector<HolePoint> points;
+  RimPoints scratch;
   RimSurface rim;
   for (int k = 0; k < 7; ++k)
     points.push_back(
         {static_cast<float>(k), static_cast<float>(k * k), 0.0F, k, 0, 1.0F, 0.0F, HoleZone::kRim});
-  EXPECT_FALSE(fit_rim(points, 0.03, rim));
+  EXPECT_FALSE(fit_rim(points, 0.03, scratch, rim));
   for (int k = 0; k < 20; ++k)
     points.push_back({0.0F, 0.0F, 0.0F, k, 0, 1.0F, 0.0F, HoleZone::kFloor});
-  EXPECT_FALSE(fit_rim(points, 0.03, rim)) << "the floor does not count";
+  EXPECT_FALSE(fit_rim(points, 0.03, scratch, rim)) << "the floor does not count";
   points.clear();
   for (int k = 0; k < 20; ++k)
     points.push_back({static_cast<float>(k), 0.0F, 0.0F, k, 0, 1.0F, 0.0F, HoleZone::kRim});
-  EXPECT_FALSE(fit_rim(points, 0.03, rim)) << "a line";
+  EXPECT_FALSE(fit_rim(points, 0.03, scratch, rim)) << "a line";
 }
 
 }  // namespace
