@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "height_plane.h"
 #include "mrpt_terrain/core/beam_slope.h"
 
 namespace mrpt_terrain {

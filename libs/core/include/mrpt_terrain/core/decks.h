@@ -97,6 +97,9 @@ struct DeckWorkspace {
 
 /// Looks for raised surfaces that can be driven on: cells whose points above the ground are one
 /// thin layer, connected without steps, even, and within reach of a wheel.
+/// \param scan points and origins of their beams, which tell noise from roughness; where they are
+/// unknown, the sensor is taken to be 1 m above the robot
+/// \param points,point_slots of the same scan, of `find_field_ground` and `build_elevation_grid`
 /// \param ground cells with rule kHigh may be decks
 /// \param[in,out] cells `deck` is filled in: number of the deck, or -1; and `deck_plane`
 void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlots& point_slots,
