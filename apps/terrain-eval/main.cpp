@@ -88,6 +88,12 @@ CLI::App& add_worlds(CLI::App& app, WorldsOptions& options) {
                   "Also judge how things keep their identity over N consecutive scans")
       ->type_name("N")
       ->check(CLI::Range(2, 100000).description(""));
+  command
+      .add_option("--fused", options.fused,
+                  "Instead: compare a terrain map (fusion = rolling) that takes N scans per world\n"
+                  "with the descriptions of single ones")
+      ->type_name("N")
+      ->check(CLI::Range(2, 100000).description(""));
   add_robot(command, options);
   command.add_option("--false-potholes", options.false_potholes, "List of all false potholes")
       ->type_name("FILE.csv");
@@ -140,7 +146,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitOk : kExitUsage;
   }
-  return worlds_command.parsed() ? run_worlds(worlds) : run_labelled(labelled);
+  if (!worlds_command.parsed()) return run_labelled(labelled);
+  return worlds.fused > 0 ? run_fused_worlds(worlds) : run_worlds(worlds);
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ struct WorldsOptions {
   std::size_t threads = 1;
   bool approach = false;
   std::size_t follow = 0;  ///< consecutive scans
+  std::size_t fused = 0;   ///< scans per world that a terrain map takes; 0: no map
   std::string sensor;      ///< instead of the world's
   double sensor_z = 0.0;   ///< instead of the world's; 0: the world's
   double speed = 0.0;      ///< instead of the world's; 0: the world's
@@ -51,4 +52,5 @@ struct LabelledOptions {
 
 /// Do what the command line asks. Return an ExitCode and print their own messages.
 int run_worlds(const WorldsOptions& options);
+int run_fused_worlds(const WorldsOptions& options);
 int run_labelled(const LabelledOptions& options);

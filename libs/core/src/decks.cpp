@@ -40,6 +40,8 @@ constexpr float kFewestPoints = 8.0F;
 // which counts up to kSteep.
 constexpr float kGrazing = 0.3F;
 constexpr float kSteep = 0.3F;
+// The same for remembered points, as if they had been seen from 5 m by a sensor 0.8 m high.
+constexpr float kUnknownSine = 0.16F;
 // Scatter where that is so: more than any surface's.
 constexpr float kLoose = 9.0F;
 // Where the beams start if that is not known: the sensor of a small robot.
@@ -232,18 +234,35 @@ float side_of(const DeckSearch& search, DeckKind kind, std::size_t slot, const D
 
 // Sums of the points on the surfaces of the decks, about the middles of the cells' tops.
 void sum_surface_points(const PointsView& scan, const FieldPoints& points,
-                        const PointSlots& point_slots, const FieldCells& cells,
-                        const DeckParams& params, DeckWorkspace& workspace) {
+                        const PointSlots& point_slots, std::size_t measured,
+                        const FieldCells& cells, const DeckParams& params,
+                        DeckWorkspace& workspace) {
   const auto side = static_cast<float>(params.side);
   workspace.sums.assign(cells.size(), HeightSums{});
+  workspace.remembered.assign(measured < point_slots.size() ? cells.size() : 0, HeightSums{});
   for (std::size_t i = 0; i < point_slots.size(); ++i) {
     if (point_slots[i] < 0 || points.support[i] != Support::kAbove) continue;
     const auto slot = static_cast<std::size_t>(point_slots[i]);
     if (cells.deck[slot] < 0) continue;
     const DeckPlane& plane = cells.deck_plane[slot];
     if (scan.z[i] < plane.at(scan.x[i], scan.y[i]) - side) continue;
-    workspace.sums[slot].add(scan.x[i] - plane.x, scan.y[i] - plane.y, scan.z[i] - plane.height);
+    (i < measured ? workspace.sums : workspace.remembered)[slot].add(
+        scan.x[i] - plane.x, scan.y[i] - plane.y, scan.z[i] - plane.height);
   }
+}
+
+// Sums of the points on the surface around a cell of a deck, about its plane's middle.
+HeightSums sums_around(const DeckSearch& search, const std::vector<HeightSums>& of_cells,
+                       std::size_t slot) {
+  const FieldCells& cells = search.cells;
+  const DeckPlane& at = cells.deck_plane[slot];
+  HeightSums sums;
+  search.visit_around(slot, kNearReach, [&](std::size_t other) {
+    if (cells.deck[other] != cells.deck[slot]) return;
+    const DeckPlane& from = cells.deck_plane[other];
+    sums.add_shifted(of_cells[other], from.x - at.x, from.y - at.y, from.height - at.height);
+  });
+  return sums;
 }
 
 // How much the points on the surface around a cell scatter about their plane, over what range noise
@@ -251,15 +270,8 @@ void sum_surface_points(const PointsView& scan, const FieldPoints& points,
 // across a surface that they meet at a grazing angle. Where the plane runs along the beams, the
 // points are those of one ring that enters something loose, such as grass.
 float scatter_at(const DeckSearch& search, const std::array<float, 3>& origin, std::size_t slot) {
-  const FieldCells& cells = search.cells;
-  const DeckPlane& at = cells.deck_plane[slot];
-  HeightSums sums;
-  search.visit_around(slot, kNearReach, [&](std::size_t other) {
-    if (cells.deck[other] != cells.deck[slot]) return;
-    const DeckPlane& from = cells.deck_plane[other];
-    sums.add_shifted(search.workspace.sums[other], from.x - at.x, from.y - at.y,
-                     from.height - at.height);
-  });
+  const DeckPlane& at = search.cells.deck_plane[slot];
+  const HeightSums sums = sums_around(search, search.workspace.sums, slot);
   if (sums.n < kFewestPoints) return -1.0F;
   const SumsPlane plane = fit_plane(sums, kHold);
   const float x = at.x + plane.mean_x - origin[0];
@@ -275,28 +287,54 @@ float scatter_at(const DeckSearch& search, const std::array<float, 3>& origin, s
   return std::sqrt(plane.variance / (noise * noise + surface * surface)) / length;
 }
 
-// Drops decks whose points scatter more than those of a surface, and numbers those that are left.
-void drop_loose_decks(const DeckSearch& search, const std::array<float, 3>& origin,
-                      std::int32_t decks, FieldCells& cells) {
-  DeckWorkspace& workspace = search.workspace;
-  workspace.scatter.clear();
-  for (std::size_t slot = 0; slot < cells.size(); ++slot) {
-    if (cells.deck[slot] < 0) continue;
-    const float scatter = scatter_at(search, origin, slot);
-    if (scatter >= 0.0F) workspace.scatter.push_back({cells.deck[slot], scatter});
-  }
+// The same for remembered points, of which it is not known from where they were seen.
+float remembered_scatter_at(const DeckSearch& search, std::size_t slot) {
+  const HeightSums sums = sums_around(search, search.workspace.remembered, slot);
+  if (sums.n < kFewestPoints) return -1.0F;
+  const SumsPlane plane = fit_plane(sums, kHold);
+  const float length =
+      std::sqrt(1.0F + plane.gradient_x * plane.gradient_x + plane.gradient_y * plane.gradient_y);
+  const float noise = kUnknownSine * static_cast<float>(search.params.beam_sigma);
+  const auto surface = static_cast<float>(search.params.surface_sigma);
+  return std::sqrt(plane.variance / (noise * noise + surface * surface)) / length;
+}
+
+// Tells decks whose points scatter as those of a surface do (1) from those that scatter more (-1)
+// by the median over their cells, where enough cells of a deck say something.
+void judge_scatter(DeckWorkspace& workspace) {
   std::sort(workspace.scatter.begin(), workspace.scatter.end());
-  workspace.deck_number.assign(static_cast<std::size_t>(decks), -1);
-  std::int32_t left = 0;
   for (std::size_t first = 0; first < workspace.scatter.size();) {
     const std::int32_t deck = workspace.scatter[first].first;
     std::size_t last = first;
     while (last < workspace.scatter.size() && workspace.scatter[last].first == deck) ++last;
     const float median = workspace.scatter[first + (last - first) / 2].second;
-    if (last - first >= kFewestPlanes && median <= 1.0F)
-      workspace.deck_number[static_cast<std::size_t>(deck)] = left++;
+    if (last - first >= kFewestPlanes)
+      workspace.deck_number[static_cast<std::size_t>(deck)] = median <= 1.0F ? 1 : -1;
     first = last;
   }
+}
+
+// Drops decks whose points scatter more than those of a surface, and numbers those that are left.
+// Remembered points have the say only about decks of which the scan itself shows too little.
+void drop_loose_decks(const DeckSearch& search, const std::array<float, 3>& origin,
+                      std::int32_t decks, FieldCells& cells) {
+  DeckWorkspace& workspace = search.workspace;
+  workspace.deck_number.assign(static_cast<std::size_t>(decks), 0);
+  const auto judge = [&](auto&& scatter_of) {
+    workspace.scatter.clear();
+    for (std::size_t slot = 0; slot < cells.size(); ++slot) {
+      const std::int32_t deck = cells.deck[slot];
+      if (deck < 0 || workspace.deck_number[static_cast<std::size_t>(deck)] != 0) continue;
+      const float scatter = scatter_of(slot);
+      if (scatter >= 0.0F) workspace.scatter.push_back({deck, scatter});
+    }
+    judge_scatter(workspace);
+  };
+  judge([&](std::size_t slot) { return scatter_at(search, origin, slot); });
+  if (!workspace.remembered.empty())
+    judge([&](std::size_t slot) { return remembered_scatter_at(search, slot); });
+  std::int32_t left = 0;
+  for (std::int32_t& number : workspace.deck_number) number = number > 0 ? left++ : -1;
   for (std::int32_t& deck : cells.deck)
     if (deck >= 0) deck = workspace.deck_number[static_cast<std::size_t>(deck)];
 }
@@ -366,7 +404,8 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
     }
     ++tried;
   }
-  sum_surface_points(scan.points, points, point_slots, cells, params, workspace);
+  sum_surface_points(scan.points, points, point_slots, scan.origins.measured, cells, params,
+                     workspace);
   // A moving sensor sees a deck from nearly the same place.
   drop_loose_decks(search, scan.origins.known() ? scan.origins.of(0) : kUnknownOrigin, found,
                    cells);

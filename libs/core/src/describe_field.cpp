@@ -71,8 +71,8 @@ void label_field_points(const PointsView& points, const DeckParams& decks,
 
 void describe_field(const ScanView& scan, const DescriptionParams& params,
                     DescriptionWorkspace& workspace, Description& description,
-                    StageListener* listener) {
-  const StageInput stage{scan, params, listener, nullptr, &workspace.cluster_slots};
+                    StageListener* listener, const double* points_cover) {
+  const StageInput stage{scan, params, listener, points_cover, &workspace.cluster_slots};
   const auto done = [listener](Stage what) {
     if (listener != nullptr) listener->stage_done(what);
   };

@@ -3,7 +3,9 @@
 
 #include <cmath>
 
+#include "describe_field.h"
 #include "describe_stages.h"
+#include "remembered_points.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -71,6 +73,66 @@ ProjectionCounts find_slots(const PointsView& points, float max_height, const El
   return counts;
 }
 
+
+// Labels and counts are those of the scan's own points, which come first.
+void keep_labels(std::size_t measured, const PointSlots& point_slots, Description& description) {
+  PointLabels& labels = description.labels;
+  labels.support.resize(measured);
+  labels.reason.resize(measured);
+  labels.terrain_class.resize(measured);
+  labels.cluster.resize(measured);
+  ProjectionCounts& counts = description.projection;
+  counts = ProjectionCounts{};
+  for (std::size_t i = 0; i < measured; ++i) {
+    if (point_slots[i] >= 0) {
+      ++counts.in_map;
+      continue;
+    }
+    const UnknownReason reason = reason_of(point_slots[i]);
+    if (reason == UnknownReason::kNotFinite) ++counts.not_finite;
+    if (reason == UnknownReason::kTooHigh) ++counts.too_high;
+    if (reason == UnknownReason::kOutsideMap) ++counts.outside_map;
+  }
+}
+
+// What the map knows of the cells of a grid. Points that were not fused may lie in a cell that it
+// knows nothing of: that is known by its mean alone.
+void look_up_cells(const RememberedWorkspace& remembered, double time, const ElevationGrid& grid,
+                   WindowCells& cells) {
+  const std::size_t n = grid.observed();
+  cells.height.resize(n);
+  cells.variance.resize(n);
+  cells.last_seen.resize(n);
+  cells.clearance.resize(n);
+  for (std::size_t slot = 0; slot < n; ++slot) {
+    const Slot from = remembered.grid.slot_of[static_cast<std::size_t>(value_of(grid.cell[slot]))];
+    const bool known = from != kUnobserved;
+    const auto k = static_cast<std::size_t>(known ? from : 0);
+    cells.height[slot] = known ? remembered.cells.height[k] : grid.h_mean[slot];
+    cells.variance[slot] = known ? remembered.cells.variance[k] : 0.0F;
+    cells.last_seen[slot] = known ? remembered.cells.last_seen[k] : time;
+    cells.clearance[slot] = known ? remembered.cells.clearance[k] : 0.0F;
+  }
+}
+
+// Field mode takes points: those of the scan, and those that stand for what the cells remember.
+void describe_fused_field(const FusedSnapshot& map, const BeamOrigins& origins,
+                          const FusedDescriptionParams& params,
+                          FusedDescriptionWorkspace& workspace, FusedDescription& result,
+                          StageListener* listener) {
+  const std::size_t measured = workspace.points.size();
+  append_remembered(map, result.frame, params.fusion, measured, workspace.remembered,
+                    workspace.points);
+  BeamOrigins of_scan = origins;
+  of_scan.measured = measured;
+  DescriptionParams description = params.description;
+  description.grid.cell_size = result.frame.geometry.cell_size();
+  describe_field({workspace.points.view(), of_scan}, description, workspace.stages,
+                 result.description, listener, &params.fusion.points_cover);
+  keep_labels(measured, workspace.stages.point_slots, result.description);
+  look_up_cells(workspace.remembered, map.time, result.description.grid, result.cells);
+}
+
 }  // namespace
 
 void describe_fused(const FusedSnapshot& map, const CurrentScan& current,
@@ -80,13 +142,19 @@ void describe_fused(const FusedSnapshot& map, const CurrentScan& current,
   const GridParams& extent = params.description.grid;
   Description& description = result.description;
   result.frame = window_around(map.lattice, extent, T_map_robot.translation());
-  read_window(map, result.frame, params.fusion, description.grid, result.cells);
   move_scan(current, ToWindow(T_map_robot, result.frame), workspace);
+  BeamOrigins origins = current.origins;
+  if (origins.known()) origins.origins = workspace.origins.data();
+  if (params.description.description.mode == DescriptionMode::kField) {
+    describe_fused_field(map, origins, params, workspace, result, listener);
+    return;
+  }
+  description.field = FieldCells{};
+  description.holes.clear();
+  read_window(map, result.frame, params.fusion, description.grid, result.cells);
   const PointsView points = workspace.points.view();
   description.projection = find_slots(points, static_cast<float>(extent.max_height),
                                       description.grid, workspace.stages.point_slots);
-  BeamOrigins origins = current.origins;
-  if (origins.known()) origins.origins = workspace.origins.data();
   const ScanView scan(points, origins);
   describe_cells({scan, params.description, listener, &params.fusion.points_cover},
                  workspace.stages, description);

@@ -39,6 +39,7 @@ void put_in_order(const std::vector<HolePoint>& points, const BeamOrigins& origi
   double x = 0.0, y = 0.0;
   rings.clear();
   for (const HolePoint& p : points) {
+    if (!origins.is_measured(static_cast<std::size_t>(p.index))) continue;
     const auto& origin = origins.of(static_cast<std::size_t>(p.index));
     const double dx = p.x - origin[0], dy = p.y - origin[1], dz = p.z - origin[2];
     const double range = std::hypot(dx, dy);

@@ -430,6 +430,7 @@ void look_around(HoleCase& hole) {
 /// Points of a hole and its walls, by depth.
 struct HoleCounts {
   int between = 0, floor = 0;
+  int measured = 0;  // on the floor, by a beam that is known
 };
 
 HoleCounts count_points(const HoleCase& hole) {
@@ -439,14 +440,21 @@ HoleCounts count_points(const HoleCase& hole) {
     const double share = p.depth / hole.depth;
     counts.between += share > kRimShare && share < kFloorShare ? 1 : 0;
     counts.floor += share >= kFloorShare ? 1 : 0;
+    const bool measured = hole.input.origins.is_measured(static_cast<std::size_t>(p.index));
+    counts.measured += share >= kFloorShare && measured ? 1 : 0;
   }
   return counts;
+}
+
+// Rings tell walls where beams are known and enough of them end on the floor.
+bool rings_tell(const HoleCase& hole, const HoleCounts& counts) {
+  return hole.input.origins.known() && counts.measured >= hole.params.least_points;
 }
 
 // Whether the floor ends at walls, and the rim is even enough for what shows it.
 bool has_walls(const HoleCase& hole, const HoleCounts& counts, RingEvidence& rings) {
   const HoleParams& params = hole.params;
-  if (!hole.input.origins.known()) {
+  if (!rings_tell(hole, counts)) {
     return counts.between <= params.wall_share * counts.floor &&
            hole.rim.sigma <= params.rim_depth * hole.depth;
   }
@@ -455,7 +463,7 @@ bool has_walls(const HoleCase& hole, const HoleCounts& counts, RingEvidence& rin
       std::sqrt(std::max(0.0, hole.rim.sigma * hole.rim.sigma - rings.noise * rings.noise));
   if (uneven > params.uneven_depth * hole.depth) return false;
   if (rings.walled < kLeastWalled || rings.walled < kLeastTrace * rings.traces) return false;
-  if (rings.walled < params.walled * counts.floor) return false;
+  if (rings.walled < params.walled * counts.measured) return false;
   if (rings.rings >= 2) return true;
   return hole.rim.sigma <= params.rim_depth * hole.depth && rings.strictly >= kLeastWalled;
 }
@@ -481,8 +489,8 @@ HoleDescription describe_hole(const HoleCase& hole, const HoleCounts& counts,
   result.points = counts.floor;
   result.rings = rings.rings;
   const double walled =
-      hole.input.origins.known()
-          ? std::min(1.0, static_cast<double>(rings.walled) / std::max(counts.floor, 1))
+      rings_tell(hole, counts)
+          ? std::min(1.0, static_cast<double>(rings.walled) / std::max(counts.measured, 1))
           : hole.params.walled;
   const double even = 1.0 - hole.rim.sigma / hole.depth;
   result.confidence = hole.closed * hole.seen * walled * std::max(even, 0.0);

@@ -56,6 +56,7 @@ void mark_stray(const HoleInput& input, HoleWorkspace& workspace) {
   for (std::size_t k = 0; k < input.field.support.size(); ++k) {
     if (input.field.support[k] != Support::kBelow) continue;
     const CellPoint& p = surface.cells.points[k];
+    if (!input.origins.is_measured(static_cast<std::size_t>(p.index))) continue;
     CellIndex cell;
     if (!input.grid.geometry.cell_at(p.x, p.y, cell)) continue;
     const Slot slot = input.grid.slot_at(cell);

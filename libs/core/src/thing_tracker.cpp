@@ -87,8 +87,8 @@ OrientedBox moved(const OrientedBox& box, const Eigen::Isometry3d& T_to_from) {
 void ThingTracker::find_pairs() {
   pairs_.clear();
   const double margin = params_.margin;
-  for (std::size_t t = 0; t < tracks_.size(); ++t) {
-    const OrientedBox& before = tracks_[t].box;
+  for (std::size_t t = 0; t < state_.tracks.size(); ++t) {
+    const OrientedBox& before = state_.tracks[t].box;
     for (std::size_t k = 0; k < boxes_.size(); ++k) {
       const OrientedBox& now = boxes_[k];
       const float gap = std::max(before.low, now.low) - std::min(before.high, now.high);
@@ -106,11 +106,11 @@ void ThingTracker::find_pairs() {
 }
 
 void ThingTracker::take_pairs(double stamp) {
-  taken_.assign(tracks_.size(), 0);
+  taken_.assign(state_.tracks.size(), 0);
   for (const Pair& pair : pairs_) {
     if (taken_[pair.track] != 0 || identities_[pair.thing] != 0) continue;
     taken_[pair.track] = 1;
-    Track& track = tracks_[pair.track];
+    Track& track = state_.tracks[pair.track];
     track.box = boxes_[pair.thing];
     track.seen = stamp;
     identities_[pair.thing] = track.identity;
@@ -125,14 +125,14 @@ const std::vector<std::uint64_t>& ThingTracker::update(
   identities_.assign(things.size(), 0);
   find_pairs();
   take_pairs(stamp);
-  tracks_.erase(
-      std::remove_if(tracks_.begin(), tracks_.end(),
+  state_.tracks.erase(
+      std::remove_if(state_.tracks.begin(), state_.tracks.end(),
                      [&](const Track& track) { return stamp - track.seen > params_.memory; }),
-      tracks_.end());
+      state_.tracks.end());
   for (std::size_t k = 0; k < things.size(); ++k) {
     if (identities_[k] != 0) continue;
-    identities_[k] = next_++;
-    tracks_.push_back({identities_[k], boxes_[k], stamp});
+    identities_[k] = state_.next++;
+    state_.tracks.push_back({identities_[k], boxes_[k], stamp});
   }
   return identities_;
 }

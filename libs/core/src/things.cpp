@@ -113,6 +113,28 @@ void gather_all(DescriptionWorkspace& workspace, const Description& description)
                 workspace.points_of);
 }
 
+// The points of a thing for its slope: where some are remembered, only those that the scan has
+// measured, if they lie in enough of the thing's cells. They come first.
+IndexRange points_for_slope(const StageInput& stage, DescriptionWorkspace& workspace,
+                            const Description& description, std::size_t k) {
+  const IndexRange all = workspace.points_of.row(k);
+  const std::size_t measured = stage.scan.origins.measured;
+  const auto end = std::lower_bound(all.begin(), all.end(), measured,
+                                    [](std::int32_t point, std::size_t first) {
+                                      return static_cast<std::size_t>(point) < first;
+                                    });
+  if (end == all.end()) return all;
+  std::int32_t cells = 0;
+  for (const std::int32_t* point = all.begin(); point != end; ++point) {
+    const auto slot =
+        static_cast<std::size_t>(workspace.cluster_slots[static_cast<std::size_t>(*point)]);
+    cells += workspace.slot_wanted[slot] == 0 ? 1 : 0;
+    workspace.slot_wanted[slot] = 1;
+  }
+  const bool covered = cells >= *stage.points_cover * description.things[k].cells;
+  return covered ? IndexRange{all.begin(), end} : all;
+}
+
 // Against the plane of the ground around; its errors are those of neighbouring cells as well.
 void measure_to_ground(const GroundAround& around, double max_sigma, ClusterDescription& thing) {
   SlopeToGround& result = thing.slope.to_ground;
@@ -180,12 +202,14 @@ void measure_thing_slopes(const StageInput& stage, DescriptionWorkspace& workspa
     return;
   }
   const ClassParams& classes = stage.params.classes;
+  workspace.slot_wanted.assign(description.grid.observed(), 0);
   for (std::size_t k = 0; k < description.things.size(); ++k) {
     ClusterDescription& thing = description.things[k];
     const bool needed = class_from_height(thing.height, classes) == TerrainClass::kNone;
     if (!needed && !classes.all_features) continue;
     thing.slope = estimate_face_slope(stage.scan.points, stage.scan.origins,
-                                      workspace.points_of.row(k), stage.params.beam_slope,
+                                      points_for_slope(stage, workspace, description, k),
+                                      stage.params.beam_slope,
                                       stage.params.slope.seed, k, workspace.face_slope);
     if (thing.slope.status != FeatureStatus::kOk) continue;
     const GroundAround* around =

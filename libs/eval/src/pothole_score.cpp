@@ -91,9 +91,7 @@ void judge(const ScanTruth& truth, const PotholePlaces& potholes, const PotholeR
   const double sigma = truth.range_sigma + truth.range_growth * view.distance;
   view.due = view.right_size && view.deep >= rules.deep_returns && view.rings >= rules.rings &&
              hole.depth >= rules.depth_in_sigmas * sigma;
-  view.found = std::any_of(potholes.places.begin(), potholes.places.end(), [&](const auto& places) {
-    return !places.empty() && is_at(places, hole.footprint, rules);
-  });
+  view.found = is_found(hole, potholes, rules);
 }
 
 /// Per described thing, how many points come from each type of truth.
@@ -132,6 +130,12 @@ bool is_right_size(const TrueThing& hole, const PotholeRules& rules) {
   const double width = std::min(hole.footprint.length, hole.footprint.width);
   return width >= rules.width_min - kRounding && width <= rules.width_max + kRounding &&
          hole.depth >= rules.depth_min - kRounding && hole.depth <= rules.depth_max + kRounding;
+}
+
+bool is_found(const TrueThing& hole, const PotholePlaces& potholes, const PotholeRules& rules) {
+  return std::any_of(potholes.places.begin(), potholes.places.end(), [&](const auto& places) {
+    return !places.empty() && is_at(places, hole.footprint, rules);
+  });
 }
 
 PotholePlaces places_of_potholes(const Description& description,

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "description_score.h"
+
 namespace mrpt_terrain::eval {
 namespace {
 
@@ -22,26 +24,9 @@ void score_scan(const WorldTask& task, const DrivenWorld& world, std::size_t swe
   const auto start = std::chrono::steady_clock::now();
   task.describe(scan.view(), scratch.description);
   score.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  ++score.scans;
-  score.points += scan.points.size();
-
   const PointsView points = scan.points.view();
-  add_support(points, scan.truth, description.labels.support, score.support);
-  const ClusterMatching matching = match_clusters(points, scan.truth, description.labels,
-                                                  description.things, task.rules.clusters);
-  add_clusters(matching, scan.truth, description.things, score.clusters);
-  add_slopes(matching, scan.truth, description.labels, description.things, score.slopes);
-
-  const PotholeRules& rules = task.rules.potholes;
-  const PotholePlaces potholes = places_of_potholes(description, scan.truth.T_map_given);
-  add_holes(look_at_holes(points, scan.truth, potholes, rules), rules, score.potholes);
-  score.potholes.ground += observed_ground(points, scan.truth, description.labels.reason);
-  for (FalsePothole& wrong : false_potholes(description, scan.truth, potholes, rules)) {
-    wrong.family = world.family;
-    wrong.seed = world.seed;
-    wrong.sweep = sweep;
-    score.potholes.wrong.push_back(std::move(wrong));
-  }
+  const ClusterMatching matching = add_description(
+      {world, sweep, scan, description, scan.truth.T_map_given}, task.rules, score);
   if (task.list_things) {
     for (ThingRecord& record :
          list_things(points, scan.truth, description.labels, description.things, matching)) {
@@ -99,6 +84,30 @@ void score_identities(const WorldTask& task, const DrivenWorld& world, Scratch& 
 }
 
 }  // namespace
+
+ClusterMatching add_description(const JudgedDescription& judged, const ScoreRules& rules,
+                                WorldScore& score) {
+  const auto& [world, sweep, scan, description, T_map_description] = judged;
+  ++score.scans;
+  score.points += scan.points.size();
+  const PointsView points = scan.points.view();
+  add_support(points, scan.truth, description.labels.support, score.support);
+  ClusterMatching matching = match_clusters(points, scan.truth, description.labels,
+                                            description.things, rules.clusters);
+  add_clusters(matching, scan.truth, description.things, score.clusters);
+  add_slopes(matching, scan.truth, description.labels, description.things, score.slopes);
+  const PotholePlaces potholes = places_of_potholes(description, T_map_description);
+  add_holes(look_at_holes(points, scan.truth, potholes, rules.potholes), rules.potholes,
+            score.potholes);
+  score.potholes.ground += observed_ground(points, scan.truth, description.labels.reason);
+  for (FalsePothole& wrong : false_potholes(description, scan.truth, potholes, rules.potholes)) {
+    wrong.family = world.family;
+    wrong.seed = world.seed;
+    wrong.sweep = sweep;
+    score.potholes.wrong.push_back(std::move(wrong));
+  }
+  return matching;
+}
 
 void WorldScore::add(const WorldScore& other) {
   worlds += other.worlds;

@@ -87,4 +87,15 @@ std::shared_ptr<TerrainSnapshot> describe_scan(const io::Scan& scan,
   return snapshot;
 }
 
+void name_clusters(const TerrainSnapshot* before, double time, const MapParams& params,
+                   MapWriter& writer, TerrainSnapshot& snapshot) {
+  if (params.description.description.mode == DescriptionMode::kPaper) {
+    snapshot.name_clusters(before, writer.next_identity);
+    return;
+  }
+  snapshot.list_clusters();
+  snapshot.set_identities(
+      writer.tracker.update(snapshot.description.things, snapshot.T_map_window, time));
+}
+
 }  // namespace mrpt_terrain

@@ -187,9 +187,6 @@ void check_together(const MapParams& params, const std::string& source) {
              !(params.creation.fusion == Fusion::kRolling && params.creation.octree),
          "octree_protect_ground: needs fusion = rolling and an OctoMap: the fused grid knows where "
          "the ground is");
-  refuse(params.creation.fusion == Fusion::kRolling &&
-             params.description.description.mode == DescriptionMode::kField,
-         "mode: field describes single scans; where scans are fused, it must be paper");
   if (problems.empty()) return;
   std::string text;
   for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;

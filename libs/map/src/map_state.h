@@ -12,6 +12,7 @@
 #include "judged_scan.h"
 #include "likelihood.h"
 #include "mrpt_terrain/core/describe.h"
+#include "mrpt_terrain/core/thing_tracker.h"
 #include "mrpt_terrain/map/terrain_map.h"
 #include "octree_half.h"
 
@@ -40,7 +41,8 @@ struct MapWriter {
   DescriptionWorkspace workspace;
   CostWorkspace costs;
   std::shared_ptr<SnapshotPool> snapshots = std::make_shared<SnapshotPool>();
-  std::uint64_t next_identity = 1;
+  std::uint64_t next_identity = 1;  ///< paper mode
+  ThingTracker tracker;             ///< field mode
   double time = 0.0;  ///< of the last scan, seconds; goes on where scans have no stamps
   std::string refusal;
 };
@@ -68,8 +70,10 @@ struct CTerrainMap::State {
 
   /// All that the map knows (serialization.cpp).
   [[nodiscard]] std::string bytes() const;
+  /// \param format in which the bytes are
   /// Throws std::runtime_error saying what is wrong with the bytes.
-  [[nodiscard]] static std::unique_ptr<State> from_bytes(const std::string& bytes);
+  [[nodiscard]] static std::unique_ptr<State> from_bytes(const std::string& bytes,
+                                                         std::uint32_t format);
 
  private:
   mutable std::mutex swapping_;  ///< held for the time of copying a pointer
@@ -86,6 +90,11 @@ struct CTerrainMap::State {
                                                              const Eigen::Isometry3d& T_map_robot,
                                                              double time, const MapParams& params,
                                                              MapWriter& writer);
+
+/// Fills the clusters of a snapshot and gives them their identities: in field mode those of the
+/// writer's tracker, in paper mode those of the clusters that lay there before.
+void name_clusters(const TerrainSnapshot* before, double time, const MapParams& params,
+                   MapWriter& writer, TerrainSnapshot& snapshot);
 
 /// Whether a cost says something.
 [[nodiscard]] inline bool is_known(const Cost& cost) {

@@ -22,8 +22,9 @@ namespace mrpt_terrain {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'T', 'E', 'R', 'R', 'A', 'I', 'N', '\n'};
-/// Of format 1 the checksum did not cover MRPT's generic parameters.
-constexpr std::uint32_t kFormat = 2;
+/// Of format 1 the checksum did not cover MRPT's generic parameters. Since format 3, maps in field
+/// mode store the things that they remember.
+constexpr std::uint32_t kFormat = 3;
 const std::string kPrefix = "map";
 
 /// Of MRPT's parameters of all maps, and the bytes of a map. The parameters stand before the bytes,
@@ -173,6 +174,89 @@ std::vector<std::uint64_t> identities_of(const TerrainSnapshot& snapshot) {
   return identities;
 }
 
+bool has_tracker(const MapParams& params) {
+  return params.description.description.mode == DescriptionMode::kField;
+}
+
+// Field by field: the structs have padding.
+void put_tracks(const std::vector<ThingTracker::Track>& tracks, BlobWriter& blob) {
+  blob.put(static_cast<std::uint64_t>(tracks.size()));
+  for (const ThingTracker::Track& track : tracks) {
+    blob.put(track.identity);
+    blob.put(track.seen);
+    for (const double value : {track.box.centre.x, track.box.centre.y, track.box.yaw,
+                               track.box.length, track.box.width}) {
+      blob.put(value);
+    }
+    blob.put(track.box.low);
+    blob.put(track.box.high);
+  }
+}
+
+void get_tracks(BlobReader& blob, ThingTracker::State& tracker) {
+  std::uint64_t last = 0;
+  for (auto n = blob.get<std::uint64_t>(); n > 0; --n) {
+    ThingTracker::Track& track = tracker.tracks.emplace_back();
+    track.identity = blob.get<std::uint64_t>();
+    track.seen = blob.get<double>();
+    bool finite = std::isfinite(track.seen);
+    for (double* value : {&track.box.centre.x, &track.box.centre.y, &track.box.yaw,
+                          &track.box.length, &track.box.width}) {
+      *value = blob.get<double>();
+      finite = finite && std::isfinite(*value);
+    }
+    track.box.low = blob.get<float>();
+    track.box.high = blob.get<float>();
+    if (track.identity <= last || track.identity >= tracker.next || !finite) {
+      throw std::runtime_error("the things that it remembers are wrong");
+    }
+    last = track.identity;
+  }
+}
+
+/// What the tracker of an older map would remember: the things of its last scan.
+void add_tracks_of(const TerrainSnapshot& snapshot, const std::vector<std::uint64_t>& identities,
+                   double time, ThingTracker::State& tracker) {
+  for (std::size_t k = 0; k < identities.size(); ++k) {
+    const OrientedBox box = moved(snapshot.description.things[k].box, snapshot.T_map_window);
+    tracker.tracks.push_back({identities[k], box, time});
+  }
+  std::sort(tracker.tracks.begin(), tracker.tracks.end(),
+            [](const auto& a, const auto& b) { return a.identity < b.identity; });
+}
+
+/// Field mode: identities of the things of a snapshot that was described again, and the tracker.
+void restore_things(BlobReader& blob, std::uint32_t format, MapWriter& writer,
+                    TerrainSnapshot& snapshot) {
+  std::vector<std::uint64_t> identities;
+  blob.get_all(identities);
+  // A later version of the description may find other things in the same scan.
+  const bool same = identities.size() == snapshot.description.things.size();
+  ThingTracker::State tracker{writer.next_identity, {}};
+  if (format >= 3) {
+    get_tracks(blob, tracker);
+  } else if (same) {
+    add_tracks_of(snapshot, identities, writer.time, tracker);
+  }
+  writer.tracker.restore(std::move(tracker));
+  snapshot.list_clusters();
+  snapshot.set_identities(same ? identities
+                               : writer.tracker.update(snapshot.description.things,
+                                                       snapshot.T_map_window, writer.time));
+}
+
+/// Paper mode: identities of the clusters of a snapshot that was described again.
+void restore_clusters(BlobReader& blob, MapWriter& writer, TerrainSnapshot& snapshot) {
+  const std::uint64_t next_identity = writer.next_identity;
+  snapshot.name_clusters(nullptr, writer.next_identity);
+  std::vector<std::uint64_t> identities;
+  blob.get_all(identities);
+  // A later version of the description may find other clusters in the same scan: they are new.
+  if (identities.size() != snapshot.clusters.size()) return;
+  for (std::size_t k = 0; k < identities.size(); ++k) snapshot.clusters[k].identity = identities[k];
+  writer.next_identity = next_identity;
+}
+
 std::string read_bytes(mrpt::serialization::CArchive& in, std::uint64_t n) {
   // Piece by piece: a damaged length must not ask for more memory than the file has bytes.
   constexpr std::uint64_t kPiece = 1U << 20U;
@@ -195,31 +279,37 @@ std::string CTerrainMap::State::bytes() const {
   blob.put_text(text_of(params));
   TerrainSnapshotPtr now;
   std::shared_ptr<const octomap::OcTree> tree;
+  ThingTracker::State tracker;
+  const bool tracked = has_tracker(params);
   {
     // What belongs together is taken together; writing it down needs no lock.
     const std::lock_guard lock(writing);
     now = snapshot();
     if (octree) tree = octree->copy();
     blob.put(now->revision);
-    blob.put(writer.next_identity);
+    if (tracked) tracker = writer.tracker.state();
+    blob.put(tracked ? tracker.next : writer.next_identity);
     blob.put(writer.time);
   }
   if (now->revision != 0) {
     if (params.creation.fusion == Fusion::kRolling) put_tiles(now->fused, blob);
     put_scan(*now, blob);
     blob.put_all(identities_of(*now));
+    if (tracked) put_tracks(tracker.tracks, blob);
   }
   if (tree) blob.put_text(OctreeHalf::bytes_of(*tree));
   return blob.bytes();
 }
 
-std::unique_ptr<CTerrainMap::State> CTerrainMap::State::from_bytes(const std::string& bytes) {
+std::unique_ptr<CTerrainMap::State> CTerrainMap::State::from_bytes(const std::string& bytes,
+                                                                   std::uint32_t format) {
   BlobReader blob(bytes);
   auto state = std::make_unique<State>(params_of(blob.get_text()));
   const auto revision = blob.get<std::uint64_t>();
   MapWriter& writer = state->writer;
-  const auto next_identity = blob.get<std::uint64_t>();
-  writer.next_identity = next_identity;
+  const bool tracked = has_tracker(state->params);
+  writer.next_identity = blob.get<std::uint64_t>();
+  if (tracked) writer.tracker.restore({writer.next_identity, {}});
   writer.time = blob.get<double>();
   if (revision != 0) {
     if (writer.fusion) get_tiles(blob, writer.fusion->grid);
@@ -227,15 +317,10 @@ std::unique_ptr<CTerrainMap::State> CTerrainMap::State::from_bytes(const std::st
     const Eigen::Isometry3d T_map_robot = get_scan(blob, scan);
     const auto next = describe_scan(scan, T_map_robot, writer.time, state->params, writer);
     next->revision = revision;
-    next->name_clusters(nullptr, writer.next_identity);
-    std::vector<std::uint64_t> identities;
-    blob.get_all(identities);
-    // A later version of the description may find other clusters in the same scan: they are new.
-    if (identities.size() == next->clusters.size()) {
-      for (std::size_t k = 0; k < identities.size(); ++k) {
-        next->clusters[k].identity = identities[k];
-      }
-      writer.next_identity = next_identity;
+    if (tracked) {
+      restore_things(blob, format, writer, *next);
+    } else {
+      restore_clusters(blob, writer, *next);
     }
     state->publish(next);
   }
@@ -277,7 +362,7 @@ void CTerrainMap::serializeFrom(mrpt::serialization::CArchive& in, uint8_t versi
     throw std::runtime_error("terrain map: it is damaged (the checksum is wrong)");
   }
   try {
-    state_ = State::from_bytes(bytes);
+    state_ = State::from_bytes(bytes, format);
   } catch (const std::exception& error) {
     throw std::runtime_error(std::string("terrain map: ") + error.what());
   }

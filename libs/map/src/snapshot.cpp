@@ -181,11 +181,22 @@ std::vector<std::size_t> TerrainSnapshot::clusters_in(const MapBox& box) const {
   return found;
 }
 
-void TerrainSnapshot::name_clusters(const TerrainSnapshot* before, std::uint64_t& next_identity) {
+void TerrainSnapshot::list_clusters() {
   clusters.clear();
   for (const ClusterDescription& thing : description.things) {
     clusters.push_back(view_of(thing, T_map_window));
   }
+}
+
+void TerrainSnapshot::set_identities(const std::vector<std::uint64_t>& identities) {
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    clusters[k].identity = clusters[k].description.identity = description.things[k].identity =
+        identities[k];
+  }
+}
+
+void TerrainSnapshot::name_clusters(const TerrainSnapshot* before, std::uint64_t& next_identity) {
+  list_clusters();
   std::vector<bool> named(clusters.size(), false);
   if (before != nullptr) {
     std::vector<bool> passed_on(before->clusters.size(), false);

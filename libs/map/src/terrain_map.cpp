@@ -67,6 +67,7 @@ CTerrainMap::State::State(const MapParams& given)
 CTerrainMap::State::State(const State& other) : State(other.params) {
   const std::lock_guard lock(other.writing);
   writer.next_identity = other.writer.next_identity;
+  writer.tracker = other.writer.tracker;
   writer.time = other.writer.time;
   if (other.octree) octree = std::make_unique<OctreeHalf>(*other.octree);
   snapshot_ = other.snapshot();
@@ -148,7 +149,7 @@ bool CTerrainMap::State::insert(const io::Scan& scan, const Eigen::Isometry3d& T
   }
   const auto next = describe_scan(scan, T_map_robot, writer.time, params, writer);
   next->revision = before->revision + 1;
-  next->name_clusters(before.get(), writer.next_identity);
+  name_clusters(before.get(), writer.time, params, writer, *next);
   publish(next);
   return true;
 }
@@ -191,6 +192,7 @@ void CTerrainMap::internal_clear() {
   const std::lock_guard lock(state_->writing);
   if (state_->octree) state_->octree->clear();
   state_->writer.fusion = make_fusion(state_->params);
+  state_->writer.tracker.forget();
   state_->publish(empty_snapshot(state_->params));
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "mrpt_terrain/core/grid_geometry.h"
@@ -28,9 +29,13 @@ namespace mrpt_terrain {
 struct BeamOrigins {
   const std::array<float, 3>* origins = nullptr;  ///< frame of the points, metres; null: unknown
   const std::uint32_t* origin_of = nullptr;       ///< per point: its origin; null: all the first
+  /// Points from this number on are remembered from earlier scans: they lie on no ring, and `of`
+  /// gives them the first origin.
+  std::size_t measured = std::numeric_limits<std::size_t>::max();
   [[nodiscard]] bool known() const { return origins != nullptr; }
+  [[nodiscard]] bool is_measured(std::size_t point) const { return point < measured; }
   [[nodiscard]] const std::array<float, 3>& of(std::size_t point) const {
-    return origins[origin_of == nullptr ? 0 : origin_of[point]];
+    return origins[origin_of == nullptr || point >= measured ? 0 : origin_of[point]];
   }
 };
 

@@ -89,6 +89,7 @@ struct DeckWorkspace {
   std::vector<DeckPlane> planes;        ///< per member: the surface there
   std::vector<float> bends, slopes;     ///< of the planes
   std::vector<HeightSums> sums;         ///< per slot: points on the surface
+  std::vector<HeightSums> remembered;   ///< the same, of remembered points; empty if there are none
   std::vector<std::pair<std::int32_t, float>> scatter;  ///< per cell of a deck: deck, scatter
   std::vector<std::int32_t> deck_number;                ///< per deck: number of those kept, or -1
   std::vector<std::uint64_t> side;    ///< per slot: parts of the cell with points of a side

@@ -19,10 +19,18 @@ struct FusedDescription {
   WindowCells cells;
 };
 
+/// Scratch memory of field mode: what the cells of the window remember, whatever its height.
+struct RememberedWorkspace {
+  ElevationGrid grid;
+  WindowCells cells;
+  std::vector<std::int32_t> hits;  ///< per cell of the window: points of the current scan
+};
+
 /// Scratch memory of `describe_fused`.
 struct FusedDescriptionWorkspace {
   DescriptionWorkspace stages;
-  Points points;                              ///< of the current scan, in the frame of the window
+  RememberedWorkspace remembered;
+  Points points;  ///< of the current scan, in the frame of the window; then remembered ones
   std::vector<std::array<float, 3>> origins;  ///< of its beams, likewise
 };
 

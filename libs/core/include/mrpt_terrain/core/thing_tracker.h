@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "mrpt_terrain/core/describe.h"
@@ -53,15 +54,29 @@ class ThingTracker {
   const std::vector<std::uint64_t>& update(const std::vector<ClusterDescription>& things,
                                            const Eigen::Isometry3d& T_map_robot, double stamp);
 
+  /// A thing that is remembered.
+  struct Track {
+    std::uint64_t identity = 0;
+    OrientedBox box;    ///< map frame
+    double seen = 0.0;  ///< stamp of the last scan that showed it, seconds
+  };
+  /// All that `update` depends on besides its arguments: for copies and files.
+  struct State {
+    std::uint64_t next = 1;     ///< identity that is given out next
+    std::vector<Track> tracks;  ///< by identity
+  };
+  [[nodiscard]] const State& state() const { return state_; }
+  /// Goes on from a state of this or another tracker.
+  /// \param state its tracks in the order of their identities, all below `next`
+  void restore(State state) { state_ = std::move(state); }
+
+  /// Forgets all things. Their identities are not used again.
+  void forget() { state_.tracks.clear(); }
+
   /// Things that are remembered.
-  [[nodiscard]] std::size_t remembered() const { return tracks_.size(); }
+  [[nodiscard]] std::size_t remembered() const { return state_.tracks.size(); }
 
  private:
-  struct Track {
-    std::uint64_t identity;
-    OrientedBox box;  ///< map frame
-    double seen;      ///< seconds
-  };
   struct Pair {
     double likeness;
     std::size_t track, thing;
@@ -70,8 +85,7 @@ class ThingTracker {
   void take_pairs(double stamp);
 
   TrackingParams params_;
-  std::uint64_t next_ = 1;
-  std::vector<Track> tracks_;  ///< by identity
+  State state_;
   std::vector<OrientedBox> boxes_;
   std::vector<Pair> pairs_;
   std::vector<std::uint8_t> taken_;  ///< per track

@@ -63,6 +63,10 @@ struct PotholePlaces {
 [[nodiscard]] PotholePlaces places_of_potholes(const Description& description,
                                                const Eigen::Isometry3d& T_map_given);
 
+/// Whether a described pothole lies at a hole.
+[[nodiscard]] bool is_found(const TrueThing& hole, const PotholePlaces& potholes,
+                            const PotholeRules& rules);
+
 /// All holes of a scan of which there is at least one return, and whether they were found.
 [[nodiscard]] std::vector<HoleView> look_at_holes(const PointsView& points, const ScanTruth& truth,
                                                   const PotholePlaces& potholes,

@@ -47,6 +47,8 @@ struct MapBox {
 struct ClusterView {
   ClusterDescription description;  ///< features and class; positions in the window's frame
   /// The same from scan to scan as long as the thing overlaps its place of before; never reused.
+  /// In field mode that of a `ThingTracker`, which also finds things again that were hidden for a
+  /// while; `description.identity` is the same.
   std::uint64_t identity = 0;
   /// Share of the cluster's points in [0, 1] that is enough for its features: n / (n + 30).
   double confidence = 0.0;
@@ -97,6 +99,11 @@ class TerrainSnapshot {
   /// Slot of the window's cell over (x, y) of the map, kUnobserved where nothing was seen.
   /// \param[out] status
   [[nodiscard]] Slot slot_at(double x, double y, PlaceStatus& status) const;
+
+  /// Fills `clusters` from `description`, without identities.
+  void list_clusters();
+  /// Gives `clusters` identities, one per cluster, and the things of `description` the same.
+  void set_identities(const std::vector<std::uint64_t>& identities);
 
   /// Fills `clusters` from `description`. Things that overlap one of `before` keep its identity.
   /// \param[in,out] next_identity the one to be given out next

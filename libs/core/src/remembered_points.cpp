@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "remembered_points.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mrpt_terrain/core/fused_cell.h"
+
+namespace mrpt_terrain {
+namespace {
+
+// Points of the last scan with which a cell needs no others for what the scan has hit.
+constexpr std::int32_t kEnough = 4;
+constexpr std::uint32_t kMostPoints = 4;
+
+void count_points(const WindowFrame& frame, const Points& points, std::size_t measured,
+                  std::vector<std::int32_t>& hits) {
+  hits.assign(static_cast<std::size_t>(frame.geometry.array_size()), 0);
+  for (std::size_t i = 0; i < measured; ++i) {
+    CellIndex cell;
+    if (!std::isfinite(points.z[i])) continue;
+    if (!frame.geometry.cell_at(points.x[i], points.y[i], cell)) continue;
+    ++hits[static_cast<std::size_t>(value_of(frame.geometry.id_of(cell)))];
+  }
+}
+
+/// Lower triangle L of a covariance L L^T; rows of directions without spread are 0.
+struct Spread {
+  float xx, xy, yy, xz, yz, zz;
+
+  explicit Spread(const HeightBin& bin) {
+    const float n = static_cast<float>(bin.count);
+    xx = std::sqrt(std::max(bin.m_xx / n, 0.0F));
+    xy = xx > 0.0F ? bin.m_xy / n / xx : 0.0F;
+    xz = xx > 0.0F ? bin.m_xz / n / xx : 0.0F;
+    yy = std::sqrt(std::max(bin.m_yy / n - xy * xy, 0.0F));
+    yz = yy > 0.0F ? (bin.m_yz / n - xy * xz) / yy : 0.0F;
+    zz = std::sqrt(std::max(bin.m_zz / n - xz * xz - yz * yz, 0.0F));
+  }
+};
+
+/// A cell of the window and where its points go.
+struct Column {
+  float x, y;    // its centre, frame of the window
+  float half;    // of its side, a little less: points on the edge may belong to the next cell
+  double below;  // z of the window in the map
+
+  void add(const HeightBin& bin, const MapLattice& lattice, float dx, float dy, float dz,
+           Points& points) const {
+    const auto bottom = static_cast<float>(lattice.bottom_of(bin.layer) - below);
+    points.push_back(x + std::clamp(bin.mean_x + dx, -half, half),
+                     y + std::clamp(bin.mean_y + dy, -half, half),
+                     bottom + std::clamp(bin.mean_z + dz, bin.z_min, bin.z_max));
+  }
+};
+
+void append(const HeightBin& bin, const MapLattice& lattice, const Column& column, Points& points) {
+  const Spread s(bin);
+  if (bin.count == 1) {
+    column.add(bin, lattice, 0.0F, 0.0F, 0.0F, points);
+    return;
+  }
+  if (bin.count == 2) {  // all spread is along the line through both
+    column.add(bin, lattice, s.xx, s.xy + s.yy, s.xz + s.yz + s.zz, points);
+    column.add(bin, lattice, -s.xx, -s.xy - s.yy, -s.xz - s.yz - s.zz, points);
+    return;
+  }
+  constexpr std::array<std::array<float, 3>, kMostPoints> kCorners{
+      {{1.0F, 1.0F, 1.0F}, {-1.0F, -1.0F, 1.0F}, {1.0F, -1.0F, -1.0F}, {-1.0F, 1.0F, -1.0F}}};
+  for (const auto& [a, b, c] : kCorners) {
+    column.add(bin, lattice, a * s.xx, a * s.xy + b * s.yy, a * s.xz + b * s.yz + c * s.zz, points);
+  }
+}
+
+}  // namespace
+
+void append_remembered(const FusedSnapshot& map, const WindowFrame& frame,
+                       const FusionParams& params, std::size_t measured,
+                       RememberedWorkspace& workspace, Points& points) {
+  WindowFrame whole = frame;
+  whole.max_height = std::numeric_limits<double>::max() / 4.0;
+  read_window(map, whole, params, workspace.grid, workspace.cells);
+  count_points(frame, points, measured, workspace.hits);
+  const double oldest = params.max_age > 0.0 ? map.time - params.max_age
+                                             : std::numeric_limits<double>::lowest();
+  const auto half = static_cast<float>(0.499 * frame.geometry.cell_size());
+  for (std::size_t slot = 0; slot < workspace.grid.observed(); ++slot) {
+    const CellId id = workspace.grid.cell[slot];
+    const CellIndex at = frame.geometry.index_of(id);
+    const Position2 centre = frame.geometry.centre_of(at);
+    const Column column{static_cast<float>(centre.x), static_cast<float>(centre.y), half, frame.z};
+    const bool enough = workspace.hits[static_cast<std::size_t>(value_of(id))] >= kEnough;
+    const MapCell where = frame.map_cell_of(at);
+    const Tile& tile = *map.tiles.find(tile_of(where));
+    for_each_bin(tile, place_in_tile(where), [&](const HeightBin& bin) {
+      const bool now = bin.last_seen >= map.time;
+      if (bin.last_seen < oldest || (now && (enough || bin.scans <= 1))) return;
+      const double top = map.lattice.bottom_of(bin.layer) + double{bin.z_max} - frame.z;
+      if (top < static_cast<double>(workspace.grid.h_min[slot])) return;
+      append(bin, map.lattice, column, points);
+    });
+  }
+}
+
+}  // namespace mrpt_terrain
