@@ -110,7 +110,8 @@ void add_map(CLI::App& app, MapOptions& options) {
   add_inputs(command, options.input);
   command
       .add_option("-c,--config", options.config,
-                  "The map's definition (.ini), as params/mrpt/terrain_map.ini")
+                  "The map's definition (.ini), as params/mrpt/terrain_map.ini, or parameters of\n"
+                  "process, as params/field.ini")
       ->type_name("FILE");
   add_settings(command, options.settings,
                "One parameter, after the file, such as creationOpts.fusion=rolling; may be "

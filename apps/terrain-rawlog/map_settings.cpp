@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "app_params.h"
 #include "mrpt_terrain/params/document.h"
 #include "mrpt_terrain/params/ini.h"
 #include "mrpt_terrain/params/parameter_error.h"
@@ -31,14 +32,37 @@ bool is_of_the_map(const params::SectionText& section) {
          is_same(section.name.substr(0, beginning.size()), beginning);
 }
 
-void load_definition(const std::string& file, MapParams& params) {
+// Whether a file is one of `process`, such as params/field.ini: it has a section of its parameters.
+bool is_of_process(const params::Document& document) {
+  AppParams known;
+  const std::vector<params::Section> sections = params::sections_of(known);
+  return std::any_of(
+      document.sections.begin(), document.sections.end(), [&](const params::SectionText& text) {
+        return std::any_of(sections.begin(), sections.end(), [&](const params::Section& section) {
+          return is_same(text.name, section.name);
+        });
+      });
+}
+
+/// What a file says about the map.
+enum class FileKind { kNone, kDefinition, kProcess };
+
+FileKind load_file(const std::string& file, MapParams& params) {
+  if (file.empty()) return FileKind::kNone;
   const params::Document document = params::read_ini(file);  // refuses what MRPT would pass over
-  if (std::none_of(document.sections.begin(), document.sections.end(), is_of_the_map)) {
+  if (std::any_of(document.sections.begin(), document.sections.end(), is_of_the_map)) {
+    load_map_params(mrpt::config::CConfigFile(file), kPrefix, params);
+    return FileKind::kDefinition;
+  }
+  if (!is_of_process(document)) {
     throw params::ParameterError(
         file + ": defines no terrain map: there is no section [" + kPrefix +
         "_creationOpts] or the like; params/mrpt/terrain_map.ini is an example");
   }
-  load_map_params(mrpt::config::CConfigFile(file), kPrefix, params);
+  const AppParams of_process = load_params(file, {});
+  params.description = of_process.description;
+  params.input = of_process.input;
+  return FileKind::kProcess;
 }
 
 // The sections of a map under their short names, such as `creationOpts`.
@@ -77,12 +101,16 @@ void fit_voxels(const std::vector<std::string>& settings, MapParams& params) {
 
 MapParams load_map_settings(const std::string& file, const std::vector<std::string>& settings) {
   MapParams result;
-  if (!file.empty()) load_definition(file, result);
+  const FileKind kind = load_file(file, result);
   const std::vector<params::Section> sections = short_sections(result);
   for (const std::string& setting : settings) {
     params::assign_all(params::read_assignment(setting, "--set"), sections);
   }
-  if (file.empty()) fit_voxels(settings, result);
+  if (kind == FileKind::kNone) fit_voxels(settings, result);
+  // A file of `process` knows nothing of voxels.
+  if (kind == FileKind::kProcess && result.creation.fusion == Fusion::kRolling &&
+      !is_set("octree_resolution", settings))
+    result.creation.octree_resolution = result.description.grid.cell_size;
   check_together(result, "--set:");
   return result;
 }

@@ -7,7 +7,8 @@
 #include "mrpt_terrain/map/map_params.h"
 
 /// Parameters of a terrain map from a definition as MRPT's programs read it
-/// (`params/mrpt/terrain_map.ini`: sections `[map_terrainMap_00_...]`), and from settings after it.
+/// (`params/mrpt/terrain_map.ini`: sections `[map_terrainMap_00_...]`), or from a file of `process`
+/// (`params/field.ini`: description and input), and from settings after it.
 /// Throws params::ParameterError, also for a file without any such section.
 /// \param file empty: the defaults; where scans are fused, cells and voxels then have the same size
 ///   unless `settings` say otherwise

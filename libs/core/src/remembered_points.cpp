@@ -12,7 +12,10 @@ namespace {
 
 // Points of the last scan with which a cell needs no others for what the scan has hit.
 constexpr std::int32_t kEnough = 4;
-constexpr std::uint32_t kMostPoints = 4;
+// Two points are enough for bins with a lesser standard deviation of heights, metres: ground.
+constexpr float kFlat = 0.02F;
+// Of heights in float, metres.
+constexpr double kRounding = 1e-4;
 
 void count_points(const WindowFrame& frame, const Points& points, std::size_t measured,
                   std::vector<std::int32_t>& hits) {
@@ -55,21 +58,36 @@ struct Column {
   }
 };
 
-void append(const HeightBin& bin, const MapLattice& lattice, const Column& column, Points& points) {
+// Adds two points, one on each side of the mean along a diagonal of the spread.
+void append_pair(const HeightBin& bin, const MapLattice& lattice, const Column& column, float side,
+                 Points& points) {
   const Spread s(bin);
-  if (bin.count == 1) {
-    column.add(bin, lattice, 0.0F, 0.0F, 0.0F, points);
-    return;
-  }
-  if (bin.count == 2) {  // all spread is along the line through both
-    column.add(bin, lattice, s.xx, s.xy + s.yy, s.xz + s.yz + s.zz, points);
-    column.add(bin, lattice, -s.xx, -s.xy - s.yy, -s.xz - s.yz - s.zz, points);
-    return;
-  }
-  constexpr std::array<std::array<float, 3>, kMostPoints> kCorners{
+  const float dx = s.xx, dy = s.xy + side * s.yy, dz = s.xz + side * s.yz + s.zz;
+  column.add(bin, lattice, dx, dy, dz, points);
+  column.add(bin, lattice, -dx, -dy, -dz, points);
+}
+
+void append_simplex(const HeightBin& bin, const MapLattice& lattice, const Column& column,
+                    Points& points) {
+  constexpr std::array<std::array<float, 3>, 4> kCorners{
       {{1.0F, 1.0F, 1.0F}, {-1.0F, -1.0F, 1.0F}, {1.0F, -1.0F, -1.0F}, {-1.0F, 1.0F, -1.0F}}};
+  const Spread s(bin);
   for (const auto& [a, b, c] : kCorners) {
     column.add(bin, lattice, a * s.xx, a * s.xy + b * s.yy, a * s.xz + b * s.yz + c * s.zz, points);
+  }
+}
+
+void append(const HeightBin& bin, const MapLattice& lattice, const Column& column, bool even,
+            Points& points) {
+  const auto n = static_cast<float>(bin.count);
+  if (bin.count == 1) {
+    column.add(bin, lattice, 0.0F, 0.0F, 0.0F, points);
+  } else if (bin.count == 2 || bin.m_zz <= kFlat * kFlat * n) {
+    // Two points have all their spread along the line through both. Flat cells beside each other
+    // take turns between the diagonals.
+    append_pair(bin, lattice, column, bin.count == 2 || even ? 1.0F : -1.0F, points);
+  } else {
+    append_simplex(bin, lattice, column, points);
   }
 }
 
@@ -82,8 +100,8 @@ void append_remembered(const FusedSnapshot& map, const WindowFrame& frame,
   whole.max_height = std::numeric_limits<double>::max() / 4.0;
   read_window(map, whole, params, workspace.grid, workspace.cells);
   count_points(frame, points, measured, workspace.hits);
-  const double oldest = params.max_age > 0.0 ? map.time - params.max_age
-                                             : std::numeric_limits<double>::lowest();
+  const double oldest =
+      params.max_age > 0.0 ? map.time - params.max_age : std::numeric_limits<double>::lowest();
   const auto half = static_cast<float>(0.499 * frame.geometry.cell_size());
   for (std::size_t slot = 0; slot < workspace.grid.observed(); ++slot) {
     const CellId id = workspace.grid.cell[slot];
@@ -97,8 +115,8 @@ void append_remembered(const FusedSnapshot& map, const WindowFrame& frame,
       const bool now = bin.last_seen >= map.time;
       if (bin.last_seen < oldest || (now && (enough || bin.scans <= 1))) return;
       const double top = map.lattice.bottom_of(bin.layer) + double{bin.z_max} - frame.z;
-      if (top < static_cast<double>(workspace.grid.h_min[slot])) return;
-      append(bin, map.lattice, column, points);
+      if (top < static_cast<double>(workspace.grid.h_min[slot]) - kRounding) return;
+      append(bin, map.lattice, column, ((where.i + where.j) & 1) == 0, points);
     });
   }
 }

@@ -11,10 +11,10 @@ namespace mrpt_terrain {
 /// Appends, to the points of the last scan, points that stand for what the cells of a window
 /// remember beyond it.
 ///
-/// A bin of n points becomes min(n, 4) points with its mean and, from four on, its covariance: the
-/// sigma points of Julier's simplex transformation, mean + L s with L L^T the covariance and
-/// s = (1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1). They are kept within the bin's cell and
-/// heights. Left out are bins that the scan shows itself: those that it alone has hit, and those
+/// A bin becomes four points with its mean and covariance: mean + L s with L L^T the covariance and
+/// s = (1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1), the corners of a tetrahedron (the simplex
+/// sigma points of Julier 2003, with equal weights). A flat one, as ground is, becomes two on a
+/// diagonal, with its mean and variances. They are kept within the bin's cell and heights. Left out are bins that the scan shows itself: those that it alone has hit, and those
 /// that it has hit in cells where `kEnough` of its points lie. Bins below the ground of their cell
 /// (`FusedCell::below`) are left out, too.
 /// \param measured number of the points of the last scan, which come first
