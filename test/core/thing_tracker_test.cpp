@@ -50,6 +50,19 @@ TEST(ThingTracker, CommonAreaIsTheShareOfPointsInBoth) {
   EXPECT_NEAR(common_area(thing(0, 0).box, thing(3, 0).box, 1.1), 0.2 * 3.2, 1e-12);
 }
 
+// A tracker that takes over the state of another goes on as that does.
+TEST(ThingTracker, GoesOnFromAState) {
+  ThingTracker tracker;
+  tracker.update({thing(1, 0), thing(5, 0)}, kStill, 0.0);
+  tracker.update({thing(5, 0)}, kStill, 1.0);
+  ThingTracker other;
+  other.restore(tracker.state());
+  EXPECT_EQ(other.update({thing(9, 0), thing(1, 0)}, kStill, 2.0), (Identities{3, 1}));
+  tracker.forget();
+  EXPECT_EQ(tracker.remembered(), 0U);
+  EXPECT_EQ(tracker.update({thing(5, 0)}, kStill, 2.0), (Identities{3})) << "not used again";
+}
+
 // The robot drives and turns; the things stand still.
 TEST(ThingTracker, ThingsThatStandStillKeepTheirIdentities) {
   ThingTracker tracker;
