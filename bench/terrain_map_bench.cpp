@@ -12,13 +12,16 @@ namespace {
 using namespace mrpt_terrain;
 
 /// A 64-beam scan of a vehicle that drives on between insertions.
-void insertion(benchmark::State& state, Fusion fusion, bool octree) {
+void insertion(benchmark::State& state, Fusion fusion, bool octree,
+               DescriptionMode mode = DescriptionMode::kPaper) {
   MapParams params;
   params.creation.fusion = fusion;
   params.creation.octree = octree;
   params.description.grid.length = params.description.grid.width = 60.0;
   params.description.grid.cell_size = 0.2;
   params.description.grid.max_height = 3.0;
+  params.description.description.mode = mode;
+  if (mode == DescriptionMode::kField) params.description.slope.method = SlopeMethod::kBeam;
   CTerrainMap map(params);
   io::Scan scan;
   scan.points = bench::benchmark_scan().points;
@@ -40,6 +43,10 @@ BENCHMARK_CAPTURE(insertion, scan_without_octree, Fusion::kScan, false)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(insertion, rolling, Fusion::kRolling, true)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(insertion, rolling_without_octree, Fusion::kRolling, false)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(insertion, scan_field, Fusion::kScan, true, DescriptionMode::kField)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(insertion, rolling_field, Fusion::kRolling, true, DescriptionMode::kField)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -101,8 +101,12 @@ TextTable cells_table(const std::vector<NamedFused>& scores) {
 
 TextTable points_table(const std::vector<NamedFused>& scores) {
   TextTable table{"Points of the last scan, %: single scan, map", {}, {}, ""};
-  table.header = {"",       "IoU",     "TPR",       "recall",     "precision",
-                  "map IoU", "map TPR", "map recall", "map precision", "scans"};
+  table.header = {""};
+  for (const std::string& prefix : {std::string(), std::string("map ")}) {
+    for (const char* name : {"IoU", "TPR", "recall", "precision", "split", "merged"})
+      table.header.push_back(prefix + name);
+  }
+  table.header.emplace_back("scans");
   for (const auto& [name, score] : scores) {
     std::vector<std::string> row{name};
     for (const eval::WorldScore* world : {&score.single, &score.fused}) {
@@ -110,6 +114,8 @@ TextTable points_table(const std::vector<NamedFused>& scores) {
       row.push_back(percent(world->support.all.obstacle_tpr()));
       row.push_back(percent(world->clusters.found));
       row.push_back(percent(world->clusters.right));
+      row.push_back(percent(world->clusters.split));
+      row.push_back(percent(world->clusters.merged));
     }
     row.push_back(count(score.single.scans));
     table.rows.push_back(std::move(row));
@@ -124,8 +130,8 @@ TextTable holes_table(const std::vector<NamedFused>& scores) {
       {},
       {},
       ""};
-  table.header = {"",        "so far", "found %",   "map found %", "due",
-                  "found %", "map found %", "false", "map false"};
+  table.header = {"",        "so far",      "found %", "map found %", "due",
+                  "found %", "map found %", "false",   "map false"};
   for (const auto& [name, score] : scores) {
     const eval::PotholeScore& one = score.single.potholes;
     const eval::PotholeScore& map = score.fused.potholes;
@@ -155,9 +161,9 @@ int run_fused_worlds(const WorldsOptions& options) {
         }
         named.score.add(score(plan, family, seed, options.fused));
         ++done;
-        messages.bar().show(static_cast<double>(done) / static_cast<double>(plan.worlds()),
-                            std::to_string(done) + " of " + std::to_string(plan.worlds()) +
-                                " worlds");
+        messages.bar().show(
+            static_cast<double>(done) / static_cast<double>(plan.worlds()),
+            std::to_string(done) + " of " + std::to_string(plan.worlds()) + " worlds");
       }
       pooled.score.add(named.score);
       scores.push_back(std::move(named));

@@ -165,6 +165,30 @@ TEST(MapCommand, TakesTheDefinitionThatMrptProgramsTake) {
   EXPECT_FALSE(contains(result.out, ".ot"));
 }
 
+// What `process` is told is all that a map needs to be described in field mode.
+TEST(MapCommand, TakesTheParametersOfProcess) {
+  const auto folder = fresh_folder();
+  const std::string config = MRPT_TERRAIN_SOURCE_DIR "/params/field.ini";
+  for (const char* fusion : {"scan", "rolling"}) {
+    const ProgramResult result =
+        build_map(folder, shipped("pothole_road.rawlog"),
+                  {"-c", config, "--set", std::string("creationOpts.fusion=") + fusion});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const CTerrainMap map = load_map_file((folder / "built/map.metricmap").string());
+    EXPECT_EQ(map.params().description.description.mode, DescriptionMode::kField);
+    EXPECT_EQ(map.params().description.grid.cell_size, 0.2);
+    EXPECT_EQ(map.params().creation.octree_resolution, 0.2);
+    const TerrainSnapshotPtr now = map.snapshot();
+    const auto potholes =
+        std::count_if(now->clusters.begin(), now->clusters.end(), [](const ClusterView& cluster) {
+          return cluster.description.terrain_class == TerrainClass::kPothole;
+        });
+    // The road has four; the first two are behind the robot by the third scan.
+    if (std::string(fusion) == "rolling") EXPECT_GE(potholes, 3);
+    if (std::string(fusion) == "scan") EXPECT_LE(potholes, 3);
+  }
+}
+
 TEST(MapCommand, OutputIsAFolderOrTheBeginningOfNames) {
   const auto folder = fresh_folder();
   std::filesystem::create_directories(folder / "there");
@@ -312,13 +336,13 @@ TEST(MapCommand, ADamagedRawlogGivesTheMapUpToThere) {
 TEST(MapCommand, WrongUseIsNamedAndNothingIsDone) {
   const auto folder = fresh_folder();
   const std::string input = write_file(folder / "drive.rawlog", drive_bytes(1));
-  const std::string paper = MRPT_TERRAIN_SOURCE_DIR "/params/paper.ini";
+  const std::string robot = MRPT_TERRAIN_SOURCE_DIR "/params/robots/husky.ini";
   const std::string typo =
       write_file(folder / "typo.ini", "[map_terrainMap_00_creationOpts]\nfusoin = rolling\n");
   const std::string twice =
       write_file(folder / "twice.ini", "[map_terrainMap_00_ground]\nt_high = 1\nt_high = 2\n");
   const std::vector<std::pair<Arguments, std::string>> cases = {
-      {{"-c", paper}, paper + ": defines no terrain map: there is no section [map_terrainMap_00_"},
+      {{"-c", robot}, robot + ": defines no terrain map: there is no section [map_terrainMap_00_"},
       {{"-c", typo},
        "[map_terrainMap_00_creationOpts] fusoin = rolling: unknown key; did you mean"},
       {{"-c", twice}, twice + ":3: [map_terrainMap_00_ground] t_high = 2: is given twice"},
