@@ -133,6 +133,27 @@ TEST(DescribeFusedField, WhatIsOutOfSightIsRemembered) {
   EXPECT_EQ(class_at(single, edge, box.y), TerrainClass::kNone) << "the scan alone knows nothing";
 }
 
+// Costs and likelihoods read the sums of the cells: those of all scans.
+TEST(DescribeFusedField, SumsOfCellsAreThoseOfAllPoints) {
+  Robot robot;
+  std::size_t points = 0;
+  for (std::uint64_t k = 1; k <= 3; ++k) {
+    const Points scan = scan_of(box_and_hole(), k);
+    points += scan.size();
+    robot.fuse(scan, at(0, 0));
+  }
+  const Points last = scan_of(box_and_hole(), 3);
+  const Description& d = robot.describe(last, at(0, 0)).description;
+  double held = 0.0;
+  for (std::size_t slot = 0; slot < d.grid.observed(); ++slot) {
+    held += d.grid.sums[slot].n;
+    ASSERT_NEAR(d.grid.h_mean[slot], d.grid.sums[slot].z / d.grid.sums[slot].n, 1e-5);
+  }
+  // Some points lie beyond the window of 30 m.
+  EXPECT_GT(held, 0.8 * static_cast<double>(points));
+  EXPECT_LE(held, static_cast<double>(points));
+}
+
 // The ages of the map are those of the description.
 TEST(DescribeFusedField, WhatIsTooOldIsForgotten) {
   Robot robot;

@@ -7,6 +7,7 @@
 #include <mrpt/maps/CSimplePointsMap.h>
 
 #include "mrpt_terrain/map/terrain_map.h"
+#include "mrpt_terrain/params/ini.h"
 #include "mrpt_terrain/params/parameter_error.h"
 #include "terrain_maps.h"
 
@@ -105,6 +106,24 @@ TEST(MapParams, TheShippedFileIsRead) {
   mrpt::maps::CMultiMetricMap maps(definitions);
   ASSERT_EQ(maps.countMapsByClass<CTerrainMap>(), 1U);
   EXPECT_EQ(maps.mapByClass<CTerrainMap>()->params().description.grid.length, 60.0);
+}
+
+// The ready file for field mode says the same as that of terrain-rawlog process, which has reasons.
+TEST(MapParams, TheReadyFileForFieldModeIsThatOfProcess) {
+  const mrpt::config::CConfigFile file(MRPT_TERRAIN_SOURCE_DIR
+                                       "/params/mrpt/terrain_map_field.ini");
+  MapParams map;
+  load_map_params(file, "map_terrainMap_00", map);
+  EXPECT_EQ(map.creation.fusion, Fusion::kRolling);
+  DescriptionParams process;
+  params::load_ini(MRPT_TERRAIN_SOURCE_DIR "/params/field.ini", process);
+  EXPECT_EQ(map.description.grid.cell_size, process.grid.cell_size);
+  EXPECT_EQ(map.description.grid.max_height, process.grid.max_height);
+  process.grid = map.description.grid;  // a map of 60 m is enough
+  process.ground = map.description.ground;
+  process.clusters = map.description.clusters;  // of no effect in field mode
+  EXPECT_EQ(params::ini_text(params::sections_of(map.description)),
+            params::ini_text(params::sections_of(process)));
 }
 
 }  // namespace

@@ -115,6 +115,26 @@ void look_up_cells(const RememberedWorkspace& remembered, double time, const Ele
   }
 }
 
+// Readers of the grid get all that the map knows of a cell instead of the few points that stood for
+// it, but where it knows of heights that do not belong to the cell: too high above the ground there,
+// or hanging over it.
+void take_over_cells(const RememberedWorkspace& remembered, float max_height,
+                     Description& description) {
+  ElevationGrid& grid = description.grid;
+  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
+    const Slot from = remembered.grid.slot_of[static_cast<std::size_t>(value_of(grid.cell[slot]))];
+    if (from == kUnobserved) continue;
+    const auto k = static_cast<std::size_t>(from);
+    const float top = description.field.ground[slot] + max_height;
+    if (remembered.grid.h_max[k] >= top || remembered.cells.clearance[k] > 0.0F) continue;
+    grid.h_min[slot] = remembered.grid.h_min[k];
+    grid.h_max[slot] = remembered.grid.h_max[k];
+    grid.h_mean[slot] = remembered.grid.h_mean[k];
+    grid.sums[slot] = remembered.grid.sums[k];
+    description.ground.h_mean[slot] = grid.h_mean[slot] - description.field.ground[slot];
+  }
+}
+
 // Field mode takes points: those of the scan, and those that stand for what the cells remember.
 void describe_fused_field(const FusedSnapshot& map, const BeamOrigins& origins,
                           const FusedDescriptionParams& params,
@@ -130,6 +150,8 @@ void describe_fused_field(const FusedSnapshot& map, const BeamOrigins& origins,
   describe_field({workspace.points.view(), of_scan}, description, workspace.stages,
                  result.description, listener, &params.fusion.points_cover);
   keep_labels(measured, workspace.stages.point_slots, result.description);
+  take_over_cells(workspace.remembered, static_cast<float>(description.grid.max_height),
+                  result.description);
   look_up_cells(workspace.remembered, map.time, result.description.grid, result.cells);
 }
 
