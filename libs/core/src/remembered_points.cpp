@@ -14,6 +14,9 @@ namespace {
 constexpr std::int32_t kEnough = 4;
 // Two points are enough for bins with a lesser standard deviation of heights, metres: ground.
 constexpr float kFlat = 0.02F;
+// And for those that begin this far above the lowest of their cell, metres: things that stand
+// there.
+constexpr double kUpright = 0.3;
 // Of heights in float, metres.
 constexpr double kRounding = 1e-4;
 
@@ -77,13 +80,13 @@ void append_simplex(const HeightBin& bin, const MapLattice& lattice, const Colum
   }
 }
 
-void append(const HeightBin& bin, const MapLattice& lattice, const Column& column, bool even,
-            Points& points) {
+void append(const HeightBin& bin, const MapLattice& lattice, const Column& column, bool in_pairs,
+            bool even, Points& points) {
   const auto n = static_cast<float>(bin.count);
   if (bin.count == 1) {
     column.add(bin, lattice, 0.0F, 0.0F, 0.0F, points);
-  } else if (bin.count == 2 || bin.m_zz <= kFlat * kFlat * n) {
-    // Two points have all their spread along the line through both. Flat cells beside each other
+  } else if (bin.count == 2 || in_pairs || bin.m_zz <= kFlat * kFlat * n) {
+    // Two points have all their spread along the line through both. Cells beside each other
     // take turns between the diagonals.
     append_pair(bin, lattice, column, bin.count == 2 || even ? 1.0F : -1.0F, points);
   } else {
@@ -116,7 +119,9 @@ void append_remembered(const FusedSnapshot& map, const WindowFrame& frame,
       if (bin.last_seen < oldest || (now && (enough || bin.scans <= 1))) return;
       const double top = map.lattice.bottom_of(bin.layer) + double{bin.z_max} - frame.z;
       if (top < static_cast<double>(workspace.grid.h_min[slot]) - kRounding) return;
-      append(bin, map.lattice, column, ((where.i + where.j) & 1) == 0, points);
+      const double bottom = map.lattice.bottom_of(bin.layer) - frame.z;
+      const bool upright = bottom > static_cast<double>(workspace.grid.h_min[slot]) + kUpright;
+      append(bin, map.lattice, column, upright, ((where.i + where.j) & 1) == 0, points);
     });
   }
 }
