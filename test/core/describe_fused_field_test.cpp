@@ -133,6 +133,25 @@ TEST(DescribeFusedField, WhatIsOutOfSightIsRemembered) {
   EXPECT_EQ(class_at(single, edge, box.y), TerrainClass::kNone) << "the scan alone knows nothing";
 }
 
+// A scan whose pose was 15 cm too high leaves a second ground; the next one sees where it is.
+TEST(DescribeFusedField, GroundUnderAWrongPoseIsNoThing) {
+  Robot robot;
+  const worlds::Scene empty;
+  robot.fuse(scan_of(empty, 1), at(0, 0, 0.25));
+  const Points last = scan_of(empty, 2);
+  robot.fuse(last, at(0, 0, 0.1));
+  const Description& d = robot.describe(last, at(0, 0, 0.1)).description;
+  std::size_t of_things = 0, near = 0;
+  for (std::size_t slot = 0; slot < d.grid.observed(); ++slot) {
+    const Position2 centre = d.grid.geometry.centre_of(d.grid.geometry.index_of(d.grid.cell[slot]));
+    if (std::hypot(centre.x, centre.y) > 4.0) continue;  // four points of the scan in a cell
+    ++near;
+    of_things += d.cells.terrain_class[slot] != TerrainClass::kNone ? 1 : 0;
+  }
+  EXPECT_GT(near, 500U);
+  EXPECT_LT(static_cast<double>(of_things), 0.1 * static_cast<double>(near));
+}
+
 // Costs and likelihoods read the sums of the cells: those of all scans.
 TEST(DescribeFusedField, SumsOfCellsAreThoseOfAllPoints) {
   Robot robot;

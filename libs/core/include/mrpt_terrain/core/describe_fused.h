@@ -19,11 +19,24 @@ struct FusedDescription {
   WindowCells cells;
 };
 
+/// Points of the current scan in a cell; heights in the frame of the window, metres.
+struct CellHits {
+  std::int32_t points = 0;
+  float low = 0.0F, high = 0.0F;
+};
+
+/// Cells of a square that the current scan has hit: those that tell where the ground was before, and
+/// those of them where it was elsewhere.
+struct ShiftCounts {
+  std::int32_t told = 0, shifted = 0;
+};
+
 /// Scratch memory of field mode: what the cells of the window remember, whatever its height.
 struct RememberedWorkspace {
   ElevationGrid grid;
   WindowCells cells;
-  std::vector<std::int32_t> hits;  ///< per cell of the window: points of the current scan
+  std::vector<CellHits> hits;       ///< per cell of the window
+  std::vector<ShiftCounts> shifts;  ///< per square of cells
 };
 
 /// Scratch memory of `describe_fused`.
