@@ -44,4 +44,9 @@ struct LocalPlane {
 /// \param[out] planes one per slot; keeps its memory
 void fit_local_planes(const ElevationGrid& grid, int reach, std::vector<LocalPlane>& planes);
 
+/// The same with other points in the cells. Cells without any count as not observed.
+/// \param sums per slot of `grid`: of its points, about the frame's origin
+void fit_local_planes(const ElevationGrid& grid, const std::vector<MomentSums>& sums, int reach,
+                      std::vector<LocalPlane>& planes);
+
 }  // namespace mrpt_terrain

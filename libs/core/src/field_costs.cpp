@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mrpt_terrain/core/field_costs.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "measure_ground.h"
+#include "slots_around.h"
+#include "things.h"
+
+namespace mrpt_terrain {
+namespace {
+
+/// What the functions below share.
+struct Input {
+  const Description& description;
+  const DescribedPoints& scan;
+  float clear;  // height from which on things hang over the robot, metres
+};
+
+// Whether some points of a cell are nothing to rest on.
+bool is_mixed(const Description& description, std::size_t slot) {
+  return description.ground.rule[slot] != GroundRule::kGround ||
+         description.field.deck[slot] >= 0 || description.field.below[slot] > 0;
+}
+
+HoleExtent extent_of(const HoleDescription& hole, const ClusterDescription* thing) {
+  HoleExtent extent;
+  extent.depth = static_cast<float>(hole.depth);
+  extent.length = static_cast<float>(std::max(hole.length, hole.width));
+  extent.width = static_cast<float>(std::min(hole.length, hole.width));
+  extent.confidence = static_cast<float>(hole.confidence);
+  if (thing == nullptr) {
+    extent.width = extent.length;  // whichever way it lies
+  } else {
+    extent.yaw = static_cast<float>(thing->box.yaw);
+  }
+  return extent;
+}
+
+HoleExtent extent_of(const ClusterDescription& thing) {
+  HoleExtent extent;
+  extent.depth = static_cast<float>(std::max(0.0, -thing.height.h_f));
+  extent.length = static_cast<float>(thing.box.length);
+  extent.width = static_cast<float>(thing.box.width);
+  extent.yaw = static_cast<float>(thing.box.yaw);
+  extent.confidence = static_cast<float>(thing.confidence);
+  return extent;
+}
+
+// Two holes in one cluster: what is worse of either.
+void take_worse(const HoleExtent& other, HoleExtent& hole) {
+  hole.depth = std::max(hole.depth, other.depth);
+  hole.length = std::max(hole.length, other.length);
+  hole.width = std::max(hole.width, other.width);
+  hole.confidence = std::max(hole.confidence, other.confidence);
+}
+
+// Cells of holes that are in no cluster: those up to two cells away that lie low.
+void mark_loose_hole(const Description& description, std::size_t slot, std::int32_t number,
+                     CellCosts& costs) {
+  for_slots_around(description.grid, slot, 2, [&](std::size_t near) {
+    const bool low = description.ground.rule[near] == GroundRule::kLow;
+    if (low && description.clusters.cluster_of[near] == kNoCluster) costs.hole[near] = number;
+  });
+}
+
+void find_extents(const Description& description, std::vector<std::int32_t>& hole_of,
+                  CellCosts& costs) {
+  const std::size_t observed = description.grid.observed();
+  costs.holes.clear();
+  hole_of.assign(description.clusters.size(), -1);
+  for (const HoleDescription& hole : description.holes) {
+    if (hole.slot < 0 || static_cast<std::size_t>(hole.slot) >= observed) continue;
+    const auto slot = static_cast<std::size_t>(hole.slot);
+    const std::int32_t cluster = description.clusters.cluster_of[slot];
+    const auto number = static_cast<std::int32_t>(costs.holes.size());
+    if (cluster == kNoCluster) {
+      costs.holes.push_back(extent_of(hole, nullptr));
+      mark_loose_hole(description, slot, number, costs);
+      continue;
+    }
+    const auto c = static_cast<std::size_t>(cluster);
+    const HoleExtent extent = extent_of(hole, &description.things[c]);
+    if (hole_of[c] >= 0) {
+      take_worse(extent, costs.holes[static_cast<std::size_t>(hole_of[c])]);
+      continue;
+    }
+    hole_of[c] = number;
+    costs.holes.push_back(extent);
+  }
+  for (std::size_t c = 0; c < description.clusters.size(); ++c) {
+    if (hole_of[c] >= 0 || description.things[c].terrain_class != TerrainClass::kPothole) continue;
+    hole_of[c] = static_cast<std::int32_t>(costs.holes.size());
+    costs.holes.push_back(extent_of(description.things[c]));
+  }
+}
+
+void find_hole_cells(const Description& description, std::vector<std::int32_t>& hole_of,
+                     CellCosts& costs) {
+  costs.hole.assign(description.grid.observed(), -1);
+  find_extents(description, hole_of, costs);
+  if (costs.holes.empty()) return;
+  for (std::size_t c = 0; c < hole_of.size(); ++c) {
+    if (hole_of[c] < 0) continue;
+    for (const std::int32_t slot : description.clusters.slots.row(c)) {
+      const auto s = static_cast<std::size_t>(slot);
+      if (description.ground.rule[s] == GroundRule::kLow) costs.hole[s] = hole_of[c];
+    }
+  }
+}
+
+// The points of cells that have no others, and an empty set for the rest.
+void copy_pure_cells(const Description& description, const CellCosts& costs, DrivableCells& cells) {
+  const ElevationGrid& grid = description.grid;
+  const std::size_t size = grid.observed();
+  cells.sums = grid.sums;
+  cells.low = grid.h_min;
+  cells.high = grid.h_max;
+  cells.mixed.resize(size);
+  cells.standing.assign(size, 0);
+  for (std::size_t slot = 0; slot < size; ++slot) {
+    const bool mixed = is_mixed(description, slot) || costs.hole[slot] >= 0;
+    cells.mixed[slot] = mixed ? 1 : 0;
+    if (!mixed) continue;
+    cells.sums[slot] = MomentSums{};
+    cells.low[slot] = std::numeric_limits<float>::max();
+    cells.high[slot] = std::numeric_limits<float>::lowest();
+  }
+}
+
+void add_standing(float height, float clear, std::size_t slot, DrivableCells& cells,
+                  CellCosts& costs) {
+  if (!(height > 0.0F) || height >= clear) return;
+  costs.obstacle[slot] = std::max(costs.obstacle[slot], height);
+  ++cells.standing[slot];
+}
+
+void add_point(const Input& in, std::size_t i, std::size_t slot, DrivableCells& cells,
+               CellCosts& costs) {
+  const FieldCells& field = in.description.field;
+  const PointsView& points = in.scan.points;
+  const Support support = in.description.labels.support[i];
+  const float z = points.z[i];
+  bool drivable = support == Support::kGround;
+  if (field.deck[slot] >= 0) {
+    const DeckPlane& plane = field.deck_plane[slot];
+    const float over = z - plane.at(points.x[i], points.y[i]);
+    // Lower points are of the ground at its side, which the cells there have.
+    drivable = drivable && over >= -plane.side;
+    if (support == Support::kAbove) add_standing(over, in.clear, slot, cells, costs);
+  } else if (support == Support::kAbove) {
+    const float height = in.scan.height != nullptr ? in.scan.height[i] : z - field.ground[slot];
+    add_standing(height, in.clear, slot, cells, costs);
+  } else if (support == Support::kBelow) {
+    drivable = in.description.ground.rule[slot] == GroundRule::kLow;
+  }
+  if (!drivable) return;
+  cells.sums[slot].add(points.x[i], points.y[i], z);
+  cells.low[slot] = std::min(cells.low[slot], z);
+  cells.high[slot] = std::max(cells.high[slot], z);
+}
+
+void add_points(const Input& in, DrivableCells& cells, CellCosts& costs) {
+  const PointSlots& slots = *in.scan.slots;
+  assert(slots.size() == in.scan.points.size);
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (slots[i] < 0) continue;
+    const auto slot = static_cast<std::size_t>(slots[i]);
+    if (cells.mixed[slot] == 0 || costs.hole[slot] >= 0) continue;
+    add_point(in, i, slot, cells, costs);
+  }
+}
+
+// Without points: what the cells themselves say.
+void add_from_cells(const Input& in, DrivableCells& cells, CellCosts& costs) {
+  const FieldCells& field = in.description.field;
+  const GridGeometry& geometry = in.description.grid.geometry;
+  for (std::size_t slot = 0; slot < cells.mixed.size(); ++slot) {
+    if (cells.mixed[slot] == 0 || costs.hole[slot] >= 0) continue;
+    const Position2 centre = geometry.centre_of(geometry.index_of(in.description.grid.cell[slot]));
+    const bool deck = field.deck[slot] >= 0;
+    const auto x = static_cast<float>(centre.x), y = static_cast<float>(centre.y);
+    const float z = deck ? field.deck_plane[slot].at(x, y) : field.floor[slot];
+    if (deck || field.on[slot] + field.below[slot] > 0) {
+      cells.sums[slot].add(centre.x, centre.y, static_cast<double>(z));
+      cells.low[slot] = cells.high[slot] = z;
+    }
+    if (deck || field.above[slot] == 0 || field.low[slot] >= in.clear) continue;
+    add_standing(std::min(field.high[slot], 0.99F * in.clear), in.clear, slot, cells, costs);
+    cells.standing[slot] = field.above[slot];
+  }
+}
+
+// What hangs above ground that nobody has seen stands on it, for all that is known.
+void let_stand(const Input& in, std::size_t slot, DrivableCells& cells, CellCosts& costs) {
+  const FieldCells& field = in.description.field;
+  if (field.deck[slot] >= 0 || field.above[slot] == 0 || cells.standing[slot] > 0) return;
+  bool ground = false;
+  for_slots_around(in.description.grid, slot, 1,
+                   [&](std::size_t near) { ground = ground || field.on[near] > 0; });
+  if (ground) return;
+  costs.obstacle[slot] = field.low[slot];
+  cells.standing[slot] = field.above[slot];
+}
+
+float likelihood_of(const Description& description, std::size_t slot, std::int32_t standing) {
+  const std::int32_t cluster = description.clusters.cluster_of[slot];
+  const double known =
+      cluster == kNoCluster ? 0.0 : description.things[static_cast<std::size_t>(cluster)].confidence;
+  return static_cast<float>(known > 0.0 ? known : confidence_of(std::max(standing, 1), 0.0));
+}
+
+void finish_cells(const Input& in, DrivableCells& cells, CellCosts& costs) {
+  const std::size_t size = cells.mixed.size();
+  cells.extent.resize(size);
+  costs.likely.assign(size, 1.0F);
+  costs.ground.assign(size, UnseenReason::kSeen);
+  for (std::size_t slot = 0; slot < size; ++slot) {
+    if (cells.mixed[slot] != 0) {
+      let_stand(in, slot, cells, costs);
+      if (cells.standing[slot] > 0)
+        costs.likely[slot] = likelihood_of(in.description, slot, cells.standing[slot]);
+      if (cells.sums[slot].n == 0.0 && costs.hole[slot] < 0)
+        costs.ground[slot] = UnseenReason::kOccluded;
+    }
+    cells.extent[slot] = std::max(0.0F, cells.high[slot] - cells.low[slot]);
+  }
+}
+
+void measure_doubt(const DrivableCells& cells, CellCosts& costs) {
+  costs.doubt.resize(cells.sums.size());
+  for (std::size_t slot = 0; slot < costs.doubt.size(); ++slot) {
+    const auto points = static_cast<float>(cells.sums[slot].n);
+    const bool known = costs.status[slot] == FeatureStatus::kOk && points > 0.0F;
+    costs.doubt[slot] = known ? 2.0F * costs.roughness[slot] / std::sqrt(points) : 0.0F;
+  }
+}
+
+}  // namespace
+
+void compute_cell_costs(const Description& description, const DescribedPoints& scan,
+                        const RobotParams& robot, CostWorkspace& workspace, CellCosts& costs) {
+  const std::size_t size = description.grid.observed();
+  clear_field_parts(costs);
+  if (description.field.size() != size || size == 0) {
+    compute_cell_costs(description.grid, robot, workspace, costs);
+    return;
+  }
+  const Input in{description, scan, static_cast<float>(robot.height + robot.overhead_reserve)};
+  DrivableCells& cells = workspace.drivable;
+  find_hole_cells(description, cells.hole_of, costs);
+  copy_pure_cells(description, costs, cells);
+  costs.obstacle.assign(size, 0.0F);
+  if (scan.slots != nullptr && scan.points.size > 0) {
+    add_points(in, cells, costs);
+  } else {
+    add_from_cells(in, cells, costs);
+  }
+  finish_cells(in, cells, costs);
+  measure_ground({description.grid, cells.sums, &cells.extent}, robot, workspace, costs);
+  measure_doubt(cells, costs);
+}
+
+DescribedPoints described_points(const PointsView& points, const DescriptionWorkspace& workspace) {
+  const bool in_field = workspace.field.points.height.size() == points.size;
+  return {points, &workspace.point_slots,
+          in_field ? workspace.field.points.height.data() : nullptr};
+}
+
+}  // namespace mrpt_terrain
