@@ -174,8 +174,8 @@ TextTable identity_table(const std::vector<NamedScore>& scores) {
 TextTable cost_table(const std::vector<NamedScore>& scores) {
   using eval::TrueCell;
   TextTable table{
-      "Costs of observed cells; traversable: lethal, and of those with nothing else beside; lethal "
-      "in truth: not lethal, and nothing lethal beside either; %",
+      "Costs of observed cells, %; traversable ones: lethal, and of those with nothing else beside; "
+      "lethal ones by kind: not lethal, of all: unknown, nothing lethal beside either",
       {"", "traversable", "lethal", "alone"},
       {},
       ""};
@@ -184,6 +184,7 @@ TextTable cost_table(const std::vector<NamedScore>& scores) {
   for (const TrueCell kind : kLethal) {
     table.header.emplace_back(name_of(kind));
     table.header.emplace_back("open");
+    table.header.emplace_back("unknown");
     table.header.emplace_back("all open");
   }
   for (const NamedScore& entry : scores) {
@@ -194,7 +195,8 @@ TextTable cost_table(const std::vector<NamedScore>& scores) {
       const auto k = static_cast<std::size_t>(kind);
       row.push_back(count(score.open[k].total));
       row.push_back(percent(score.open[k]));
-      row.push_back(percent(score.unseen[k]));
+      row.push_back(percent(score.unknown[k]));
+      row.push_back(percent(score.all_open[k]));
     }
     table.rows.push_back(std::move(row));
   }

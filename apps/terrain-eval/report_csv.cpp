@@ -106,7 +106,8 @@ void add_costs(const eval::CostScore& score, Lines& lines) {
     if (entry.value <= eval::TrueCell::kTraversable) continue;
     const auto k = static_cast<std::size_t>(entry.value);
     lines.add("cost_not_lethal", entry.name, score.open[k]);
-    lines.add("cost_not_lethal_beside", entry.name, score.unseen[k]);
+    lines.add("cost_unknown", entry.name, score.unknown[k]);
+    lines.add("cost_nothing_lethal_beside", entry.name, score.all_open[k]);
   }
 }
 

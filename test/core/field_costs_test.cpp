@@ -116,13 +116,19 @@ TEST(FieldCosts, FreeUnderWhatHangsAboveTheRobot) {
   EXPECT_EQ(World(ground_with(kThing, 1.0), tall).lethal_in(kPatch), 25);
 }
 
-// Where the ground under it was not seen, it may stand on it; where it was seen beside, the cell is
-// free, but costs what is hidden there.
-TEST(FieldCosts, WhatHangsOverUnseenGroundStands) {
+// Where the ground under it was not seen, nothing is known; beside something that stands it is taken
+// for its upper part. Where the ground was seen beside, the cell is free, but costs what is hidden.
+TEST(FieldCosts, WhatHangsOverUnseenGround) {
   Points points;
   worlds::add_flat(points, {-6.0, 1.0, -6.0, 6.0}, 0.05, 0.0);
   worlds::add_flat(points, kThing, 0.05, 1.2);
-  EXPECT_EQ(World(points).lethal_in(kThing), 25);
+  const World alone(points);
+  EXPECT_EQ(alone.lethal_in(kPatch), 0);
+  EXPECT_EQ(alone.at(2.5, 1.5).status, CostStatus::kUnknown);
+  EXPECT_EQ(alone.at(2.5, 1.5).cost, alone.robot.cost_occluded);
+  worlds::add_flat(points, {2.0, 2.2, 1.0, 2.0}, 0.05, 0.3);
+  // The five cells that stand and the five behind them.
+  EXPECT_EQ(World(points).lethal_in(kThing), 10);
 
   Points beside;
   worlds::add_flat(beside, kPatch, 0.05, 0.0);
@@ -280,11 +286,13 @@ TEST(FieldCosts, WhatIsNotLikelyCostsWithoutStopping) {
   EXPECT_EQ(cost_of(costs, 0, robot).status, CostStatus::kLethal);
 }
 
-/// Hills with things on them and noise.
-Points busy_ground(std::uint64_t seed) {
+/// Hills with things on them, a curb and noise.
+Points busy_ground(std::uint64_t seed, double curb = 0.0) {
   RandomGenerator random(seed);
   Points points;
-  const auto height = [](double x, double y) { return 0.3 * std::sin(0.4 * x) + 0.05 * y; };
+  const auto height = [curb](double x, double y) {
+    return 0.3 * std::sin(0.4 * x) + 0.05 * y + (x < -2.05 ? curb : 0.0);
+  };
   worlds::add_surface(points, kPatch, 0.06, [&](double x, double y) {
     return height(x, y) + 0.01 * worlds::normal_deviate(random);
   });
@@ -341,28 +349,74 @@ TEST(FieldCosts, OracleGridOfTheGroundAlone) {
   EXPECT_GT(mixed, 10);
 }
 
-// Obstacles point by point.
+// Obstacles point by point: above the reference, or from the foot to the top of a cell.
 TEST(FieldCosts, OracleObstaclesPointByPoint) {
-  const World world(busy_ground(8));
+  const World world(busy_ground(8, 0.2));
+  const Description& description = world.description;
   const double clear = world.robot.height + world.robot.overhead_reserve;
-  std::vector<double> highest(world.costs.size(), 0.0);
-  std::vector<bool> seen(world.costs.size(), false);
+  struct Cell {
+    double highest = 0.0, top = -1e9, foot = 0.0, n = 0.0;
+    bool hangs = false;
+  };
+  std::vector<Cell> cells(world.costs.size());
   for (std::size_t i = 0; i < world.points.size(); ++i) {
     const std::int32_t slot = world.workspace.point_slots[i];
-    if (slot < 0 || world.description.labels.support[i] != Support::kAbove) continue;
+    if (slot < 0) continue;
+    Cell& cell = cells[static_cast<std::size_t>(slot)];
+    const double z = double{world.points.z[i]};
     const double height = double{world.workspace.field.points.height[i]};
-    const auto s = static_cast<std::size_t>(slot);
-    if (height < clear) highest[s] = std::max(highest[s], height);
+    if (description.labels.support[i] == Support::kGround) {
+      cell.foot += z;
+      cell.n += 1.0;
+    } else if (description.labels.support[i] == Support::kAbove && height < clear) {
+      cell.highest = std::max(cell.highest, height);
+      cell.top = std::max(cell.top, z);
+    } else {
+      cell.hangs = true;
+    }
   }
   int standing = 0, hanging = 0;
-  for (std::size_t slot = 0; slot < world.costs.size(); ++slot) {
-    if (world.description.field.deck[slot] >= 0) continue;
-    EXPECT_EQ(double{world.costs.obstacle[slot]}, highest[slot]);
-    standing += highest[slot] > 0.0 ? 1 : 0;
-    hanging += highest[slot] == 0.0 && world.description.field.above[slot] > 0 ? 1 : 0;
+  for (std::size_t slot = 0; slot < cells.size(); ++slot) {
+    const Cell& cell = cells[slot];
+    if (description.field.deck[slot] >= 0 || (cell.n == 0.0 && cell.hangs)) continue;
+    double allowed = 0.0;
+    const Position2 here = world.centre_of(slot);
+    for (std::size_t other = 0; other < cells.size(); ++other) {
+      const Position2 there = world.centre_of(other);
+      const double dx = there.x - here.x, dy = there.y - here.y;
+      if (other == slot || std::max(std::abs(dx), std::abs(dy)) > 0.5) continue;
+      const double rise = double{description.field.rim[other] - description.field.rim[slot]};
+      allowed = std::max(allowed, std::abs(rise) * 0.2 / std::hypot(dx, dy));
+    }
+    const double rise = cell.n > 0.0 ? cell.top - cell.foot / cell.n - allowed : 0.0;
+    EXPECT_NEAR(world.costs.obstacle[slot], std::max(cell.highest, rise), 1e-5);
+    standing += cell.highest > 0.0 ? 1 : 0;
+    hanging += cell.highest == 0.0 && description.field.above[slot] > 0 ? 1 : 0;
   }
   EXPECT_GT(standing, 10);
   EXPECT_GT(hanging, 3);
+}
+
+// A curb of 14 cm, from which the reference climbs: its cells hold points of the road and the top.
+TEST(FieldCosts, CurbsAreMeasuredFromTheirFoot) {
+  Points points;
+  worlds::add_surface(points, kPatch, 0.05,
+                      [](double x, double) { return x > 2.1 ? 0.14 : 0.0; });
+  RandomGenerator random(1);
+  worlds::add_wall(points, 2.1, -6.0, 6.0, 0.14, 0.02, 0.0, random);
+  RobotParams robot;
+  robot.max_step = 0.12;
+  robot.ground_clearance = 0.12;
+  const World world(points, robot);
+  for (double y = -4.9; y < 5.0; y += 0.2) {
+    EXPECT_EQ(world.at(2.1, y).status, CostStatus::kLethal) << y;
+    EXPECT_EQ(world.at(1.7, y).status, CostStatus::kOk) << y;
+  }
+  int from_feet = 0;
+  for (std::size_t slot = 0; slot < world.costs.size(); ++slot) {
+    from_feet += world.costs.obstacle[slot] > 1.05F * world.description.field.high[slot] ? 1 : 0;
+  }
+  EXPECT_GT(from_feet, 20);
 }
 
 // What cells say stands in where the points are not at hand.

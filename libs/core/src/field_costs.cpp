@@ -121,6 +121,9 @@ void copy_pure_cells(const Description& description, const CellCosts& costs, Dri
   cells.high = grid.h_max;
   cells.mixed.resize(size);
   cells.standing.assign(size, 0);
+  cells.top.assign(size, std::numeric_limits<float>::lowest());
+  cells.foot.assign(size, 0.0F);
+  cells.foot_points.assign(size, 0);
   for (std::size_t slot = 0; slot < size; ++slot) {
     const bool mixed = is_mixed(description, slot) || costs.hole[slot] >= 0;
     cells.mixed[slot] = mixed ? 1 : 0;
@@ -131,36 +134,58 @@ void copy_pure_cells(const Description& description, const CellCosts& costs, Dri
   }
 }
 
-void add_standing(float height, float clear, std::size_t slot, DrivableCells& cells,
+void add_drivable(double x, double y, float z, std::size_t slot, DrivableCells& cells) {
+  cells.sums[slot].add(x, y, static_cast<double>(z));
+  cells.low[slot] = std::min(cells.low[slot], z);
+  cells.high[slot] = std::max(cells.high[slot], z);
+}
+
+// A point at a height above what it stands on, metres.
+void add_standing(const Input& in, float height, float z, std::size_t slot, DrivableCells& cells,
                   CellCosts& costs) {
-  if (!(height > 0.0F) || height >= clear) return;
+  if (!(height > 0.0F) || height >= in.clear) return;
   costs.obstacle[slot] = std::max(costs.obstacle[slot], height);
+  cells.top[slot] = std::max(cells.top[slot], z);
   ++cells.standing[slot];
 }
 
-void add_point(const Input& in, std::size_t i, std::size_t slot, DrivableCells& cells,
-               CellCosts& costs) {
-  const FieldCells& field = in.description.field;
+// A point of ground from which what stands in the cell rises.
+void add_foot(float z, std::size_t slot, DrivableCells& cells) {
+  cells.foot[slot] += z;
+  ++cells.foot_points[slot];
+}
+
+void add_point_of_deck(const Input& in, std::size_t i, std::size_t slot, DrivableCells& cells,
+                       CellCosts& costs) {
   const PointsView& points = in.scan.points;
   const Support support = in.description.labels.support[i];
-  const float z = points.z[i];
-  bool drivable = support == Support::kGround;
-  if (field.deck[slot] >= 0) {
-    const DeckPlane& plane = field.deck_plane[slot];
-    const float over = z - plane.at(points.x[i], points.y[i]);
-    // Lower points are of the ground at its side, which the cells there have.
-    drivable = drivable && over >= -plane.side;
-    if (support == Support::kAbove) add_standing(over, in.clear, slot, cells, costs);
-  } else if (support == Support::kAbove) {
-    const float height = in.scan.height != nullptr ? in.scan.height[i] : z - field.ground[slot];
-    add_standing(height, in.clear, slot, cells, costs);
-  } else if (support == Support::kBelow) {
-    drivable = in.description.ground.rule[slot] == GroundRule::kLow;
+  const float x = points.x[i], y = points.y[i], z = points.z[i];
+  const DeckPlane& plane = in.description.field.deck_plane[slot];
+  const float over = z - plane.at(x, y);
+  if (support == Support::kAbove) {
+    add_standing(in, over, z, slot, cells, costs);
+  } else if (support == Support::kGround && over >= -plane.side) {
+    add_drivable(static_cast<double>(x), static_cast<double>(y), z, slot, cells);
+    cells.top[slot] = std::max(cells.top[slot], z);
+  } else if (support == Support::kGround) {
+    add_foot(z, slot, cells);
   }
-  if (!drivable) return;
-  cells.sums[slot].add(points.x[i], points.y[i], z);
-  cells.low[slot] = std::min(cells.low[slot], z);
-  cells.high[slot] = std::max(cells.high[slot], z);
+}
+
+void add_point_of_ground(const Input& in, std::size_t i, std::size_t slot, DrivableCells& cells,
+                         CellCosts& costs) {
+  const PointsView& points = in.scan.points;
+  const Support support = in.description.labels.support[i];
+  const float x = points.x[i], y = points.y[i], z = points.z[i];
+  const bool low = in.description.ground.rule[slot] == GroundRule::kLow;
+  if (support == Support::kAbove) {
+    const float ground = in.description.field.ground[slot];
+    const float height = in.scan.height != nullptr ? in.scan.height[i] : z - ground;
+    add_standing(in, height, z, slot, cells, costs);
+  } else if (support == Support::kGround || (support == Support::kBelow && low)) {
+    add_drivable(static_cast<double>(x), static_cast<double>(y), z, slot, cells);
+    add_foot(z, slot, cells);
+  }
 }
 
 void add_points(const Input& in, DrivableCells& cells, CellCosts& costs) {
@@ -170,7 +195,11 @@ void add_points(const Input& in, DrivableCells& cells, CellCosts& costs) {
     if (slots[i] < 0) continue;
     const auto slot = static_cast<std::size_t>(slots[i]);
     if (cells.mixed[slot] == 0 || costs.hole[slot] >= 0) continue;
-    add_point(in, i, slot, cells, costs);
+    if (in.description.field.deck[slot] >= 0) {
+      add_point_of_deck(in, i, slot, cells, costs);
+    } else {
+      add_point_of_ground(in, i, slot, cells, costs);
+    }
   }
 }
 
@@ -185,25 +214,24 @@ void add_from_cells(const Input& in, DrivableCells& cells, CellCosts& costs) {
     const auto x = static_cast<float>(centre.x), y = static_cast<float>(centre.y);
     const float z = deck ? field.deck_plane[slot].at(x, y) : field.floor[slot];
     if (deck || field.on[slot] + field.below[slot] > 0) {
-      cells.sums[slot].add(centre.x, centre.y, static_cast<double>(z));
-      cells.low[slot] = cells.high[slot] = z;
+      add_drivable(centre.x, centre.y, z, slot, cells);
     }
     if (deck || field.above[slot] == 0 || field.low[slot] >= in.clear) continue;
-    add_standing(std::min(field.high[slot], 0.99F * in.clear), in.clear, slot, cells, costs);
+    costs.obstacle[slot] = std::min(field.high[slot], in.clear);
     cells.standing[slot] = field.above[slot];
   }
 }
 
-// What hangs above ground that nobody has seen stands on it, for all that is known.
-void let_stand(const Input& in, std::size_t slot, DrivableCells& cells, CellCosts& costs) {
+// What hangs above ground that was not seen may stand on it. It does if something stands beside.
+void let_stand(const Input& in, std::size_t slot, const DrivableCells& cells, CellCosts& costs) {
   const FieldCells& field = in.description.field;
   if (field.deck[slot] >= 0 || field.above[slot] == 0 || cells.standing[slot] > 0) return;
-  bool ground = false;
-  for_slots_around(in.description.grid, slot, 1,
-                   [&](std::size_t near) { ground = ground || field.on[near] > 0; });
-  if (ground) return;
-  costs.obstacle[slot] = field.low[slot];
-  cells.standing[slot] = field.above[slot];
+  bool ground = false, stands = false;
+  for_slots_around(in.description.grid, slot, 1, [&](std::size_t near) {
+    ground = ground || field.on[near] > 0;
+    stands = stands || cells.standing[near] > 0;
+  });
+  if (!ground && stands) costs.obstacle[slot] = field.low[slot];
 }
 
 float likelihood_of(const Description& description, std::size_t slot, std::int32_t standing) {
@@ -221,12 +249,41 @@ void finish_cells(const Input& in, DrivableCells& cells, CellCosts& costs) {
   for (std::size_t slot = 0; slot < size; ++slot) {
     if (cells.mixed[slot] != 0) {
       let_stand(in, slot, cells, costs);
-      if (cells.standing[slot] > 0)
+      if (costs.obstacle[slot] > 0.0F)
         costs.likely[slot] = likelihood_of(in.description, slot, cells.standing[slot]);
       if (cells.sums[slot].n == 0.0 && costs.hole[slot] < 0)
         costs.ground[slot] = UnseenReason::kOccluded;
     }
     cells.extent[slot] = std::max(0.0F, cells.high[slot] - cells.low[slot]);
+  }
+}
+
+// How much the ground around rises across a cell, metres: the steepest way to a cell nearby, by the
+// mean height of the ground about both, which a curb raises little.
+float rise_across(const Description& description, std::size_t slot) {
+  const ElevationGrid& grid = description.grid;
+  const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
+  const float here = description.field.rim[slot];
+  float steepest = 0.0F;
+  for_slots_around(grid, slot, 2, [&](std::size_t near) {
+    const CellIndex other = grid.geometry.index_of(grid.cell[near]);
+    const auto l = static_cast<float>(other.l - at.l), w = static_cast<float>(other.w - at.w);
+    const float cells = std::max(1.0F, std::sqrt(l * l + w * w));
+    steepest = std::max(steepest, std::abs(description.field.rim[near] - here) / cells);
+  });
+  return steepest;
+}
+
+// The reference climbs where things are long and low, such as curbs. Where a cell holds points at
+// the top and at the foot, they tell the height themselves.
+void measure_from_feet(const Input& in, const DrivableCells& cells, CellCosts& costs) {
+  for (std::size_t slot = 0; slot < cells.mixed.size(); ++slot) {
+    if (cells.mixed[slot] == 0 || cells.foot_points[slot] == 0) continue;
+    const float foot = cells.foot[slot] / static_cast<float>(cells.foot_points[slot]);
+    const float rise = cells.top[slot] - foot;
+    if (rise <= costs.obstacle[slot]) continue;
+    costs.obstacle[slot] =
+        std::max(costs.obstacle[slot], rise - rise_across(in.description, slot));
   }
 }
 
@@ -261,6 +318,7 @@ void compute_cell_costs(const Description& description, const DescribedPoints& s
   }
   finish_cells(in, cells, costs);
   measure_ground({description.grid, cells.sums, &cells.extent}, robot, workspace, costs);
+  measure_from_feet(in, cells, costs);
   measure_doubt(cells, costs);
 }
 

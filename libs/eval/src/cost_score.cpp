@@ -108,7 +108,8 @@ void CostScore::add(const CostScore& other) {
   blocked_free.add(other.blocked_free);
   for (std::size_t k = 0; k < kTrueCellCount; ++k) {
     open[k].add(other.open[k]);
-    unseen[k].add(other.unseen[k]);
+    unknown[k].add(other.unknown[k]);
+    all_open[k].add(other.all_open[k]);
   }
 }
 
@@ -146,15 +147,18 @@ void add_costs(const ElevationGrid& grid, const CellCosts& costs, const GridGeom
           grid.slot_at(place) == kUnobserved) {
         continue;
       }
-      const bool lethal = status_at(cell) == CostStatus::kLethal;
+      const CostStatus status = status_at(cell);
+      const bool lethal = status == CostStatus::kLethal;
       bool any_lethal = false, all_free = true;
       for_cells_beside(middle, cell, [&](CellIndex beside) {
         any_lethal = any_lethal || status_at(beside) == CostStatus::kLethal;
         all_free = all_free && kinds[number_of(middle, beside)] == TrueCell::kTraversable;
       });
       if (is_lethal_kind(kinds[k])) {
-        score.open[static_cast<std::size_t>(kinds[k])].count(!lethal);
-        score.unseen[static_cast<std::size_t>(kinds[k])].count(!any_lethal);
+        const auto kind = static_cast<std::size_t>(kinds[k]);
+        score.open[kind].count(!lethal);
+        score.unknown[kind].count(status == CostStatus::kUnknown);
+        score.all_open[kind].count(!any_lethal);
         continue;
       }
       score.blocked.count(lethal);

@@ -33,7 +33,7 @@ struct RobotParams {
   double max_step = 0.08;                 ///< metres
   double max_roughness = 0.05;            ///< metres
   double overhead_reserve = 0.1;          ///< metres over `height` that have to be free
-  double least_confidence = 0.1;          ///< [0, 1]: things and holes less certain do not stop it
+  double least_confidence = 0.03;         ///< [0, 1]: things and holes less certain do not stop it
   double cost_out_of_view = 0.3;          ///< [0, 1): of ground where no beam points,
   double cost_occluded = 0.6;             ///< behind or under something,
   double cost_no_return = 0.5;            ///< or where nothing came back
@@ -168,7 +168,10 @@ struct DrivableCells {
   std::vector<float> extent;           ///< per slot: high - low, metres
   std::vector<std::uint8_t> mixed;     ///< per slot: not all of its points are
   std::vector<std::int32_t> standing;  ///< per slot: points in the robot's way
-  std::vector<std::int32_t> hole_of;   ///< per cluster: number of its hole, or -1
+  std::vector<float> top;              ///< per slot: highest of these, or of the deck, metres
+  std::vector<float> foot;             ///< per slot: sum of the heights of the ground beside, metres
+  std::vector<std::int32_t> foot_points;
+  std::vector<std::int32_t> hole_of;       ///< per cluster: number of its hole, or -1
 };
 
 /// How well the plane of a window is known. Windows without a plane have no cells.

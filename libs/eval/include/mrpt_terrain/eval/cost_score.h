@@ -45,8 +45,10 @@ struct CostRules {
 struct CostScore {
   Share blocked;       ///< traversable cells: lethal
   Share blocked_free;  ///< of these with nothing but traversable ones beside: lethal
-  std::array<Share, kTrueCellCount> open;     ///< per kind of truly lethal cells: not lethal
-  std::array<Share, kTrueCellCount> unseen;   ///< the same: nothing lethal beside either
+  // Per kind of truly lethal cells:
+  std::array<Share, kTrueCellCount> open;      ///< not lethal
+  std::array<Share, kTrueCellCount> unknown;   ///< cost unknown; not lethal either
+  std::array<Share, kTrueCellCount> all_open;  ///< not lethal, nor is anything beside
   void add(const CostScore& other);
 };
 
