@@ -397,26 +397,21 @@ TEST(FieldCosts, OracleObstaclesPointByPoint) {
   EXPECT_GT(hanging, 3);
 }
 
-// A curb of 14 cm, from which the reference climbs: its cells hold points of the road and the top.
-TEST(FieldCosts, CurbsAreMeasuredFromTheirFoot) {
+// A wall of 20 cm that the reference climbs to half its height: its cells hold points of its foot
+// and of its top.
+TEST(FieldCosts, LowThingsAreMeasuredFromTheirFoot) {
   Points points;
-  worlds::add_surface(points, kPatch, 0.05,
-                      [](double x, double) { return x > 2.1 ? 0.14 : 0.0; });
+  worlds::add_flat(points, kPatch, 0.05, 0.0);
   RandomGenerator random(1);
-  worlds::add_wall(points, 2.1, -6.0, 6.0, 0.14, 0.02, 0.0, random);
-  RobotParams robot;
-  robot.max_step = 0.12;
-  robot.ground_clearance = 0.12;
-  const World world(points, robot);
-  for (double y = -4.9; y < 5.0; y += 0.2) {
-    EXPECT_EQ(world.at(2.1, y).status, CostStatus::kLethal) << y;
-    EXPECT_EQ(world.at(1.7, y).status, CostStatus::kOk) << y;
-  }
-  int from_feet = 0;
-  for (std::size_t slot = 0; slot < world.costs.size(); ++slot) {
-    from_feet += world.costs.obstacle[slot] > 1.05F * world.description.field.high[slot] ? 1 : 0;
-  }
-  EXPECT_GT(from_feet, 20);
+  worlds::add_wall(points, 2.1, -6.0, 6.0, 0.2, 0.02, 0.0, random);
+  World world(points);
+  EXPECT_NEAR(world.at(2.1, 0.1).parts.obstacle * 0.08, 0.2, 0.03);
+  std::vector<float> height = world.workspace.field.points.height;
+  for (float& h : height) h -= h > 0.0F ? 0.1F : 0.0F;
+  compute_cell_costs(world.description,
+                     {world.points.view(), &world.workspace.point_slots, height.data()},
+                     world.robot, world.cost_workspace, world.costs);
+  EXPECT_NEAR(world.at(2.1, 0.1).parts.obstacle * 0.08, 0.2, 0.03);
 }
 
 // What cells say stands in where the points are not at hand.
