@@ -411,7 +411,9 @@ TEST(FieldCosts, LowThingsAreMeasuredFromTheirFoot) {
   compute_cell_costs(world.description,
                      {world.points.view(), &world.workspace.point_slots, height.data()},
                      world.robot, world.cost_workspace, world.costs);
-  EXPECT_NEAR(world.at(2.1, 0.1).parts.obstacle * 0.08, 0.2, 0.03);
+  // 3 cm for points at the foot of the wall.
+  EXPECT_GT(world.at(2.1, 0.1).parts.obstacle * 0.08, 0.15);
+  EXPECT_LT(world.at(2.1, 0.1).parts.obstacle * 0.08, 0.21);
 }
 
 // What cells say stands in where the points are not at hand.
