@@ -379,16 +379,19 @@ TEST(FieldCosts, OracleObstaclesPointByPoint) {
   for (std::size_t slot = 0; slot < cells.size(); ++slot) {
     const Cell& cell = cells[slot];
     if (description.field.deck[slot] >= 0 || (cell.n == 0.0 && cell.hangs)) continue;
-    double allowed = 0.0;
+    std::array<double, 2> allowed{};  // along the axes
     const Position2 here = world.centre_of(slot);
     for (std::size_t other = 0; other < cells.size(); ++other) {
       const Position2 there = world.centre_of(other);
       const double dx = there.x - here.x, dy = there.y - here.y;
-      if (other == slot || std::max(std::abs(dx), std::abs(dy)) > 0.5) continue;
+      if (std::abs(std::hypot(dx, dy) - 0.2) > 0.01) continue;  // the four at the sides
+      double& along = allowed[std::abs(dx) > std::abs(dy) ? 0 : 1];
       const double rise = double{description.field.rim[other] - description.field.rim[slot]};
-      allowed = std::max(allowed, std::abs(rise) * 0.2 / std::hypot(dx, dy));
+      along = std::max(along, std::abs(rise));
     }
-    const double rise = cell.n > 0.0 ? cell.top - cell.foot / cell.n - allowed : 0.0;
+    const bool low = cell.highest <= 0.5;
+    const double rise =
+        cell.n > 0.0 && low ? cell.top - cell.foot / cell.n - allowed[0] - allowed[1] : 0.0;
     EXPECT_NEAR(world.costs.obstacle[slot], std::max(cell.highest, rise), 1e-5);
     standing += cell.highest > 0.0 ? 1 : 0;
     hanging += cell.highest == 0.0 && description.field.above[slot] > 0 ? 1 : 0;

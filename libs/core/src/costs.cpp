@@ -89,14 +89,18 @@ Slot best_window(const WindowsAround& windows, std::size_t slot, std::int32_t ow
 
 // Where cells follow each other in a row of the grid, so do those around them: they are looked up
 // once for all of `kCellLanes` cells, and compared side by side.
-void find_cells_in_row(const ElevationGrid& grid, std::vector<std::uint8_t>& in_row) {
+// Skipped cells are in no row.
+void find_cells_in_row(const ElevationGrid& grid, const CellSelection& selection,
+                       std::vector<std::uint8_t>& in_row) {
   const std::size_t size = grid.observed();
   in_row.resize(size);
   for (std::size_t slot = size; slot > 0; --slot) {
     const bool goes_on =
         slot < size && value_of(grid.cell[slot]) == value_of(grid.cell[slot - 1]) + 1;
     const std::size_t length = goes_on ? in_row[slot] + std::size_t{1} : 1;
-    in_row[slot - 1] = static_cast<std::uint8_t>(std::min(length, kCellLanes));
+    in_row[slot - 1] = selection.is_skipped(slot - 1)
+                           ? std::uint8_t{0}
+                           : static_cast<std::uint8_t>(std::min(length, kCellLanes));
   }
 }
 
@@ -179,9 +183,10 @@ CellSurface surface_of(const std::vector<LocalPlane>& planes, Slot window) {
   return {plane.x, plane.y, plane.z, plane.gradient_x, plane.gradient_y, plane.roughness, 1.0F};
 }
 
-void find_surfaces(const ElevationGrid& grid, int reach, CostWorkspace& workspace) {
+void find_surfaces(const ElevationGrid& grid, const CellSelection& selection, int reach,
+                   CostWorkspace& workspace) {
   find_qualities(workspace.planes, workspace.qualities);
-  find_cells_in_row(grid, workspace.in_row);
+  find_cells_in_row(grid, selection, workspace.in_row);
   workspace.surfaces.resize(grid.observed() + 1);
   workspace.surfaces[place_of(kUnobserved)] = CellSurface{};
   const WindowsAround windows(grid, reach);
@@ -190,7 +195,9 @@ void find_surfaces(const ElevationGrid& grid, int reach, CostWorkspace& workspac
     const bool together = workspace.in_row[slot] == kCellLanes &&
                           best_windows_of_row(grid, reach, slot, workspace, best);
     count = together ? kCellLanes : 1;
-    if (!together) {
+    if (workspace.in_row[slot] == 0) {
+      best[0] = kUnobserved;
+    } else if (!together) {
       best[0] = best_window(windows, slot, workspace.planes[slot].cells, workspace.qualities);
     }
     for (std::size_t k = 0; k < count; ++k) {
@@ -330,17 +337,21 @@ void set_lanes_of_row(const Ground& ground, std::size_t slot, CellsAround& cells
   set_all_nearby(rows, cells);
 }
 
-// Sets up to `kCellLanes` cells from a slot on; returns how many.
+// Sets up to `kCellLanes` cells from slot `next` on, which moves on behind them; returns how many.
+// \param slots where they are
 std::size_t set_lanes(const Ground& ground, const std::vector<std::uint8_t>& in_row,
-                      std::size_t slot, CellsAround& cells) {
-  if (in_row[slot] == kCellLanes) {
-    set_lanes_of_row(ground, slot, cells);
+                      std::size_t& next, CellsAround& cells, std::size_t* slots) {
+  if (in_row[next] == kCellLanes) {
+    set_lanes_of_row(ground, next, cells);
+    for (std::size_t lane = 0; lane < kCellLanes; ++lane) slots[lane] = next++;
     return kCellLanes;
   }
   std::size_t count = 0;
-  for (; count < kCellLanes && slot + count < in_row.size(); ++count) {
-    if (in_row[slot + count] == kCellLanes) break;
-    set_lane(ground, slot + count, count, cells);
+  for (; count < kCellLanes && next < in_row.size(); ++next) {
+    if (in_row[next] == kCellLanes) break;
+    if (in_row[next] == 0) continue;  // skipped
+    set_lane(ground, next, count, cells);
+    slots[count++] = next;
   }
   return count;
 }
@@ -502,6 +513,15 @@ void write_lane(const Ground& ground, const CellsAround& cells, std::size_t lane
   costs.status[slot] = FeatureStatus::kOk;
 }
 
+void write_skipped(const std::vector<std::uint8_t>& skipped, CellCosts& costs) {
+  for (std::size_t slot = 0; slot < skipped.size(); ++slot) {
+    if (skipped[slot] == 0) continue;
+    costs.gradient_x[slot] = costs.gradient_y[slot] = 0.0F;
+    costs.step[slot] = costs.roughness[slot] = 0.0F;
+    costs.status[slot] = FeatureStatus::kTooFewPoints;
+  }
+}
+
 // Parts that descriptions of field mode have; those of holes are for the way across one.
 template <class Across>
 void add_field_parts(const CellCosts& costs, std::size_t slot, const RobotParams& robot,
@@ -628,21 +648,23 @@ void measure_ground(const GroundPoints& points, const RobotParams& robot, CostWo
   const ElevationGrid& grid = points.grid;
   const std::size_t size = grid.observed();
   const int reach = window_reach(robot, grid.geometry.cell_size());
-  fit_local_planes(grid, points.sums, reach, workspace.planes);
-  find_surfaces(grid, reach, workspace);
+  fit_local_planes(grid, points.cells, reach, workspace.planes);
+  find_surfaces(grid, points.cells, reach, workspace);
   costs.gradient_x.resize(size);
   costs.gradient_y.resize(size);
   costs.step.resize(size);
   costs.roughness.resize(size);
   costs.status.resize(size);
-  const Ground ground{grid, points.sums, points.extent, workspace.surfaces,
+  const Ground ground{grid, points.cells.sums, points.extent, workspace.surfaces,
                       std::tan(robot.max_climb)};
+  if (points.cells.skipped != nullptr) write_skipped(*points.cells.skipped, costs);
   CellsAround cells;
-  for (std::size_t first = 0, count = 0; first < size; first += count) {
-    count = set_lanes(ground, workspace.in_row, first, cells);
+  std::size_t slots[kCellLanes];
+  for (std::size_t next = 0; next < size;) {
+    const std::size_t count = set_lanes(ground, workspace.in_row, next, cells, slots);
     measure_lanes(ground.max_gradient, grid.geometry.cell_size(), cells);
     for (std::size_t lane = 0; lane < count; ++lane) {
-      write_lane(ground, cells, lane, first + lane, workspace.planes, costs);
+      write_lane(ground, cells, lane, slots[lane], workspace.planes, costs);
     }
   }
 }
@@ -660,7 +682,7 @@ void clear_field_parts(CellCosts& costs) {
 void compute_cell_costs(const ElevationGrid& grid, const RobotParams& robot,
                         CostWorkspace& workspace, CellCosts& costs) {
   clear_field_parts(costs);
-  measure_ground({grid, grid.sums, nullptr}, robot, workspace, costs);
+  measure_ground({grid, {grid.sums}}, robot, workspace, costs);
 }
 
 double CostParts::of(CostPart part) const {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 #include "measure_ground.h"
 #include "slots_around.h"
@@ -13,6 +12,9 @@
 namespace mrpt_terrain {
 namespace {
 
+// Things that are lower are measured from their foot, too, metres.
+constexpr float kLow = 0.5F;
+
 /// What the functions below share.
 struct Input {
   const Description& description;
@@ -20,10 +22,14 @@ struct Input {
   float clear;  // height from which on things hang over the robot, metres
 };
 
-// Whether some points of a cell are nothing to rest on.
-bool is_mixed(const Description& description, std::size_t slot) {
-  return description.ground.rule[slot] != GroundRule::kGround ||
-         description.field.deck[slot] >= 0 || description.field.below[slot] > 0;
+// What the points of a cell are.
+CellMix mix_of(const Description& description, const CellCosts& costs, std::size_t slot) {
+  if (costs.hole[slot] >= 0) return CellMix::kHole;
+  if (description.field.deck[slot] >= 0) return CellMix::kDeck;
+  if (description.ground.rule[slot] == GroundRule::kLow) return CellMix::kLow;
+  const bool ground = description.ground.rule[slot] == GroundRule::kGround &&
+                      description.field.below[slot] == 0;
+  return ground ? CellMix::kNone : CellMix::kGround;
 }
 
 HoleExtent extent_of(const HoleDescription& hole, const ClusterDescription* thing) {
@@ -117,42 +123,36 @@ void copy_pure_cells(const Description& description, const CellCosts& costs, Dri
   const ElevationGrid& grid = description.grid;
   const std::size_t size = grid.observed();
   cells.sums = grid.sums;
-  cells.low = grid.h_min;
-  cells.high = grid.h_max;
+  cells.extent.resize(size);
   cells.mixed.resize(size);
-  cells.standing.assign(size, 0);
-  cells.top.assign(size, std::numeric_limits<float>::lowest());
-  cells.foot.assign(size, 0.0F);
-  cells.foot_points.assign(size, 0);
+  cells.cells.resize(size);
   for (std::size_t slot = 0; slot < size; ++slot) {
-    const bool mixed = is_mixed(description, slot) || costs.hole[slot] >= 0;
-    cells.mixed[slot] = mixed ? 1 : 0;
-    if (!mixed) continue;
+    cells.mixed[slot] = mix_of(description, costs, slot);
+    cells.extent[slot] = grid.h_diff(slot);
+    if (cells.mixed[slot] == CellMix::kNone) continue;
     cells.sums[slot] = MomentSums{};
-    cells.low[slot] = std::numeric_limits<float>::max();
-    cells.high[slot] = std::numeric_limits<float>::lowest();
+    cells.cells[slot] = MixedCell{};
   }
 }
 
-void add_drivable(double x, double y, float z, std::size_t slot, DrivableCells& cells) {
-  cells.sums[slot].add(x, y, static_cast<double>(z));
-  cells.low[slot] = std::min(cells.low[slot], z);
-  cells.high[slot] = std::max(cells.high[slot], z);
+void add_drivable(double x, double y, float z, MomentSums& sums, MixedCell& cell) {
+  sums.add(x, y, static_cast<double>(z));
+  cell.low = std::min(cell.low, z);
+  cell.high = std::max(cell.high, z);
 }
 
 // A point at a height above what it stands on, metres.
-void add_standing(const Input& in, float height, float z, std::size_t slot, DrivableCells& cells,
-                  CellCosts& costs) {
+void add_standing(const Input& in, float height, float z, MixedCell& cell, float& obstacle) {
   if (!(height > 0.0F) || height >= in.clear) return;
-  costs.obstacle[slot] = std::max(costs.obstacle[slot], height);
-  cells.top[slot] = std::max(cells.top[slot], z);
-  ++cells.standing[slot];
+  obstacle = std::max(obstacle, height);
+  cell.top = std::max(cell.top, z);
+  ++cell.standing;
 }
 
 // A point of ground from which what stands in the cell rises.
-void add_foot(float z, std::size_t slot, DrivableCells& cells) {
-  cells.foot[slot] += z;
-  ++cells.foot_points[slot];
+void add_foot(float z, MixedCell& cell) {
+  cell.foot += z;
+  ++cell.foot_points;
 }
 
 void add_point_of_deck(const Input& in, std::size_t i, std::size_t slot, DrivableCells& cells,
@@ -162,13 +162,14 @@ void add_point_of_deck(const Input& in, std::size_t i, std::size_t slot, Drivabl
   const float x = points.x[i], y = points.y[i], z = points.z[i];
   const DeckPlane& plane = in.description.field.deck_plane[slot];
   const float over = z - plane.at(x, y);
+  MixedCell& cell = cells.cells[slot];
   if (support == Support::kAbove) {
-    add_standing(in, over, z, slot, cells, costs);
+    add_standing(in, over, z, cell, costs.obstacle[slot]);
   } else if (support == Support::kGround && over >= -plane.side) {
-    add_drivable(static_cast<double>(x), static_cast<double>(y), z, slot, cells);
-    cells.top[slot] = std::max(cells.top[slot], z);
+    add_drivable(static_cast<double>(x), static_cast<double>(y), z, cells.sums[slot], cell);
+    cell.top = std::max(cell.top, z);
   } else if (support == Support::kGround) {
-    add_foot(z, slot, cells);
+    add_foot(z, cell);
   }
 }
 
@@ -176,26 +177,28 @@ void add_point_of_ground(const Input& in, std::size_t i, std::size_t slot, Driva
                          CellCosts& costs) {
   const PointsView& points = in.scan.points;
   const Support support = in.description.labels.support[i];
-  const float x = points.x[i], y = points.y[i], z = points.z[i];
-  const bool low = in.description.ground.rule[slot] == GroundRule::kLow;
   if (support == Support::kAbove) {
+    const float z = points.z[i];
     const float ground = in.description.field.ground[slot];
     const float height = in.scan.height != nullptr ? in.scan.height[i] : z - ground;
-    add_standing(in, height, z, slot, cells, costs);
-  } else if (support == Support::kGround || (support == Support::kBelow && low)) {
-    add_drivable(static_cast<double>(x), static_cast<double>(y), z, slot, cells);
-    add_foot(z, slot, cells);
+    add_standing(in, height, z, cells.cells[slot], costs.obstacle[slot]);
+  } else if (support == Support::kGround ||
+             (support == Support::kBelow && cells.mixed[slot] == CellMix::kLow)) {
+    const auto x = static_cast<double>(points.x[i]), y = static_cast<double>(points.y[i]);
+    add_drivable(x, y, points.z[i], cells.sums[slot], cells.cells[slot]);
+    add_foot(points.z[i], cells.cells[slot]);
   }
 }
 
 void add_points(const Input& in, DrivableCells& cells, CellCosts& costs) {
-  const PointSlots& slots = *in.scan.slots;
-  assert(slots.size() == in.scan.points.size);
-  for (std::size_t i = 0; i < slots.size(); ++i) {
+  assert(in.scan.slots->size() == in.scan.points.size);
+  const std::int32_t* slots = in.scan.slots->data();
+  const CellMix* mixed = cells.mixed.data();
+  for (std::size_t i = 0; i < in.scan.points.size; ++i) {
     if (slots[i] < 0) continue;
     const auto slot = static_cast<std::size_t>(slots[i]);
-    if (cells.mixed[slot] == 0 || costs.hole[slot] >= 0) continue;
-    if (in.description.field.deck[slot] >= 0) {
+    if (mixed[slot] == CellMix::kNone || mixed[slot] == CellMix::kHole) continue;
+    if (mixed[slot] == CellMix::kDeck) {
       add_point_of_deck(in, i, slot, cells, costs);
     } else {
       add_point_of_ground(in, i, slot, cells, costs);
@@ -208,30 +211,39 @@ void add_from_cells(const Input& in, DrivableCells& cells, CellCosts& costs) {
   const FieldCells& field = in.description.field;
   const GridGeometry& geometry = in.description.grid.geometry;
   for (std::size_t slot = 0; slot < cells.mixed.size(); ++slot) {
-    if (cells.mixed[slot] == 0 || costs.hole[slot] >= 0) continue;
+    const CellMix mix = cells.mixed[slot];
+    if (mix == CellMix::kNone || mix == CellMix::kHole) continue;
     const Position2 centre = geometry.centre_of(geometry.index_of(in.description.grid.cell[slot]));
-    const bool deck = field.deck[slot] >= 0;
+    const bool deck = mix == CellMix::kDeck;
     const auto x = static_cast<float>(centre.x), y = static_cast<float>(centre.y);
     const float z = deck ? field.deck_plane[slot].at(x, y) : field.floor[slot];
     if (deck || field.on[slot] + field.below[slot] > 0) {
-      add_drivable(centre.x, centre.y, z, slot, cells);
+      add_drivable(centre.x, centre.y, z, cells.sums[slot], cells.cells[slot]);
     }
     if (deck || field.above[slot] == 0 || field.low[slot] >= in.clear) continue;
     costs.obstacle[slot] = std::min(field.high[slot], in.clear);
-    cells.standing[slot] = field.above[slot];
+    cells.cells[slot].standing = field.above[slot];
   }
 }
 
 // What hangs above ground that was not seen may stand on it. It does if something stands beside.
 void let_stand(const Input& in, std::size_t slot, const DrivableCells& cells, CellCosts& costs) {
   const FieldCells& field = in.description.field;
-  if (field.deck[slot] >= 0 || field.above[slot] == 0 || cells.standing[slot] > 0) return;
-  bool ground = false, stands = false;
-  for_slots_around(in.description.grid, slot, 1, [&](std::size_t near) {
-    ground = ground || field.on[near] > 0;
-    stands = stands || cells.standing[near] > 0;
-  });
-  if (!ground && stands) costs.obstacle[slot] = field.low[slot];
+  if (field.deck[slot] >= 0 || field.above[slot] == 0) return;
+  if (cells.cells[slot].standing > 0) return;
+  bool stands = false;
+  const std::int32_t id = value_of(in.description.grid.cell[slot]);
+  const std::int32_t stride = in.description.grid.geometry.stride();
+  for (const std::int32_t row : {id - stride, id, id + stride}) {
+    for (std::int32_t at = row - 1; at <= row + 1; ++at) {
+      const Slot near = in.description.grid.slot_of[static_cast<std::size_t>(at)];
+      if (near == kUnobserved) continue;
+      const auto n = static_cast<std::size_t>(near);
+      if (field.on[n] > 0) return;  // the ground is seen
+      stands = stands || (cells.mixed[n] != CellMix::kNone && cells.cells[n].standing > 0);
+    }
+  }
+  if (stands) costs.obstacle[slot] = field.low[slot];
 }
 
 float likelihood_of(const Description& description, std::size_t slot, std::int32_t standing) {
@@ -243,44 +255,52 @@ float likelihood_of(const Description& description, std::size_t slot, std::int32
 
 void finish_cells(const Input& in, DrivableCells& cells, CellCosts& costs) {
   const std::size_t size = cells.mixed.size();
-  cells.extent.resize(size);
   costs.likely.assign(size, 1.0F);
   costs.ground.assign(size, UnseenReason::kSeen);
+  cells.skipped.assign(size, 0);
   for (std::size_t slot = 0; slot < size; ++slot) {
-    if (cells.mixed[slot] != 0) {
-      let_stand(in, slot, cells, costs);
-      if (costs.obstacle[slot] > 0.0F)
-        costs.likely[slot] = likelihood_of(in.description, slot, cells.standing[slot]);
-      if (cells.sums[slot].n == 0.0 && costs.hole[slot] < 0)
-        costs.ground[slot] = UnseenReason::kOccluded;
+    if (cells.mixed[slot] == CellMix::kNone) continue;
+    let_stand(in, slot, cells, costs);
+    if (costs.obstacle[slot] > 0.0F)
+      costs.likely[slot] = likelihood_of(in.description, slot, cells.cells[slot].standing);
+    if (cells.sums[slot].n == 0.0 && costs.hole[slot] < 0) {
+      costs.ground[slot] = UnseenReason::kOccluded;
+      // Whatever the ground is like below what stands.
+      cells.skipped[slot] = costs.obstacle[slot] > 0.0F ? 1 : 0;
     }
-    cells.extent[slot] = std::max(0.0F, cells.high[slot] - cells.low[slot]);
+    cells.extent[slot] = std::max(0.0F, cells.cells[slot].high - cells.cells[slot].low);
   }
 }
 
-// How much the ground around rises across a cell, metres: the steepest way to a cell nearby, by the
-// mean height of the ground about both, which a curb raises little.
+// How much the ground around rises from one corner of a cell to the opposite one, metres: by the
+// mean height of the ground about it and the nearest cells along the axes. A curb raises that
+// little.
 float rise_across(const Description& description, std::size_t slot) {
   const ElevationGrid& grid = description.grid;
-  const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
-  const float here = description.field.rim[slot];
-  float steepest = 0.0F;
-  for_slots_around(grid, slot, 2, [&](std::size_t near) {
-    const CellIndex other = grid.geometry.index_of(grid.cell[near]);
-    const auto l = static_cast<float>(other.l - at.l), w = static_cast<float>(other.w - at.w);
-    const float cells = std::max(1.0F, std::sqrt(l * l + w * w));
-    steepest = std::max(steepest, std::abs(description.field.rim[near] - here) / cells);
-  });
-  return steepest;
+  const std::vector<float>& rim = description.field.rim;
+  const std::int32_t id = value_of(grid.cell[slot]);
+  float sum = 0.0F;
+  for (const std::int32_t axis : {1, grid.geometry.stride()}) {
+    float steepest = 0.0F;
+    for (const std::int32_t side : {-axis, axis}) {
+      // The frame about the grid has no slots.
+      const Slot next = grid.slot_of[static_cast<std::size_t>(id + side)];
+      if (next == kUnobserved) continue;
+      steepest = std::max(steepest, std::abs(rim[static_cast<std::size_t>(next)] - rim[slot]));
+    }
+    sum += steepest;
+  }
+  return sum;
 }
 
 // The reference climbs where things are long and low, such as curbs. Where a cell holds points at
 // the top and at the foot, they tell the height themselves.
 void measure_from_feet(const Input& in, const DrivableCells& cells, CellCosts& costs) {
   for (std::size_t slot = 0; slot < cells.mixed.size(); ++slot) {
-    if (cells.mixed[slot] == 0 || cells.foot_points[slot] == 0) continue;
-    const float foot = cells.foot[slot] / static_cast<float>(cells.foot_points[slot]);
-    const float rise = cells.top[slot] - foot;
+    if (cells.mixed[slot] == CellMix::kNone || costs.obstacle[slot] > kLow) continue;
+    const MixedCell& cell = cells.cells[slot];
+    if (cell.foot_points == 0) continue;
+    const float rise = cell.top - cell.foot / static_cast<float>(cell.foot_points);
     if (rise <= costs.obstacle[slot]) continue;
     costs.obstacle[slot] =
         std::max(costs.obstacle[slot], rise - rise_across(in.description, slot));
@@ -317,7 +337,7 @@ void compute_cell_costs(const Description& description, const DescribedPoints& s
     add_from_cells(in, cells, costs);
   }
   finish_cells(in, cells, costs);
-  measure_ground({description.grid, cells.sums, &cells.extent}, robot, workspace, costs);
+  measure_ground({description.grid, {cells.sums, &cells.skipped}, &cells.extent}, robot, workspace, costs);
   measure_from_feet(in, cells, costs);
   measure_doubt(cells, costs);
 }

@@ -9,13 +9,14 @@ namespace mrpt_terrain {
 
 /// Points of which the ground consists; borrowed.
 struct GroundPoints {
-  const ElevationGrid& grid;              ///< which cells are observed
-  const std::vector<MomentSums>& sums;    ///< per slot; cells may have no points
-  const std::vector<float>* extent;       ///< per slot: highest less lowest; null: the grid's
+  const ElevationGrid& grid;  ///< which cells are observed
+  CellSelection cells;        ///< their points; cells may have none
+  const std::vector<float>* extent = nullptr;  ///< per slot: highest less lowest; null: the grid's
 };
 
 /// Slope, step and roughness of `compute_cell_costs`. Cells without points take part in no surface;
-/// their own is that of the best window around, and their height makes no step.
+/// their own is that of the best window around, and their height makes no step. Cells that are
+/// skipped have no surface and no step.
 void measure_ground(const GroundPoints& points, const RobotParams& robot, CostWorkspace& workspace,
                     CellCosts& costs);
 

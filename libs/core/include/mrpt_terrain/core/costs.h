@@ -161,17 +161,34 @@ struct CellCosts {
   }
 };
 
+/// What the points of a cell are.
+enum class CellMix : std::uint8_t {
+  kNone = 0,  ///< ground
+  kGround,    ///< ground and what stands on it or lies below
+  kLow,       ///< ground that lies low, and what stands on it
+  kDeck,      ///< a deck and what lies beside
+  kHole       ///< the floor of a hole
+};
+
+/// What the points of a mixed cell are: ground, and what stands in it. Heights are metres, frame of
+/// the grid.
+struct MixedCell {
+  float low = std::numeric_limits<float>::max();      ///< lowest drivable point
+  float high = std::numeric_limits<float>::lowest();  ///< highest drivable point
+  float top = std::numeric_limits<float>::lowest();   ///< highest of what stands, or of a deck
+  float foot = 0.0F;                                  ///< sum over the ground it stands on
+  std::int32_t foot_points = 0;
+  std::int32_t standing = 0;  ///< points in the robot's way
+};
+
 /// Points that a wheel can rest on, in the cells of a description of field mode.
 struct DrivableCells {
-  std::vector<MomentSums> sums;        ///< per slot
-  std::vector<float> low, high;        ///< per slot: lowest and highest of them, metres
-  std::vector<float> extent;           ///< per slot: high - low, metres
-  std::vector<std::uint8_t> mixed;     ///< per slot: not all of its points are
-  std::vector<std::int32_t> standing;  ///< per slot: points in the robot's way
-  std::vector<float> top;              ///< per slot: highest of these, or of the deck, metres
-  std::vector<float> foot;             ///< per slot: sum of the heights of the ground beside, metres
-  std::vector<std::int32_t> foot_points;
-  std::vector<std::int32_t> hole_of;       ///< per cluster: number of its hole, or -1
+  std::vector<MomentSums> sums;       ///< per slot
+  std::vector<float> extent;          ///< per slot: highest less lowest of them, metres
+  std::vector<CellMix> mixed;         ///< per slot
+  std::vector<std::uint8_t> skipped;  ///< per slot: no window is wanted about it
+  std::vector<MixedCell> cells;       ///< per slot; left as they are where cells are not mixed
+  std::vector<std::int32_t> hole_of;  ///< per cluster: number of its hole, or -1
 };
 
 /// How well the plane of a window is known. Windows without a plane have no cells.
