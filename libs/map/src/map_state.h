@@ -12,6 +12,7 @@
 #include "judged_scan.h"
 #include "likelihood.h"
 #include "mrpt_terrain/core/describe.h"
+#include "mrpt_terrain/core/unseen_cells.h"
 #include "mrpt_terrain/map/terrain_map.h"
 #include "octree_half.h"
 
@@ -39,6 +40,7 @@ struct MapWriter {
   io::Scan scan;
   DescriptionWorkspace workspace;
   CostWorkspace costs;
+  UnseenWorkspace unseen;
   std::shared_ptr<SnapshotPool> snapshots = std::make_shared<SnapshotPool>();
   std::uint64_t next_identity = 1;
   double time = 0.0;  ///< of the last scan, seconds; goes on where scans have no stamps

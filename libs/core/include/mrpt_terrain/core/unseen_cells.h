@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -15,8 +16,19 @@ struct SectorThing {
   float top;    ///< tangent of the elevation of its highest point, or of one before it
 };
 
+/// Direction and distance of a place from the sensor.
+struct SectorPlace {
+  int sector = -1;     ///< of half a degree; -1: none
+  float range = 0.0F;  ///< horizontal, metres
+};
+
 /// Scratch memory of `explain_unseen_cells`.
 struct UnseenWorkspace {
+  std::vector<SectorPlace> places;  ///< per point
+  // Of the cells, as long as they and the sensor stay the same:
+  GridGeometry geometry;
+  std::array<float, 3> origin{};
+  std::vector<SectorPlace> cells;   ///< cell l * cells_w + w
   std::vector<float> lowest;        ///< per sector: tangent of the lowest beam with a return
   std::vector<std::int32_t> first;  ///< per sector, and one more: its things
   std::vector<std::int32_t> count;  ///< per sector
