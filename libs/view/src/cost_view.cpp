@@ -74,24 +74,24 @@ void draw_cost_legend(Canvas& canvas, const TopViewLayout& layout, const std::ve
   const auto count = [&](CostStatus status) {
     return grouped(cells[static_cast<std::size_t>(status)]);
   };
-  canvas.text(left + 64.0, base + 36.0, count(CostStatus::kOk) + " cells below 1", kSmall);
+  canvas.text(left + 290.0, base + 22.0, "below 1: " + count(CostStatus::kOk), kSmall);
   draw_legend_entry(canvas, left + 290.0, base, kLethalColour,
                     "lethal: " + count(CostStatus::kLethal));
   draw_legend_entry(canvas, left + 410.0, base, kUnknownColour,
                     "cost unknown: " + count(CostStatus::kUnknown));
-  canvas.text(left, base + 58.0, "not seen", kSmall);
-  draw_unseen_legend(canvas, left + 64.0, base + 58.0, layout.column_width - 64.0, grid, options);
+  canvas.text(left, base + 44.0, "not seen", kSmall);
+  draw_unseen_legend(canvas, left + 64.0, base + 44.0, layout.column_width - 64.0, grid, options);
 }
 
 std::string caption_of(const RobotParams& robot, const CellCosts& costs) {
   const double degrees = 180.0 / 3.14159265358979323846;
-  std::string caption = "Costs: slope to " +
-                        fixed(std::min(robot.max_climb, robot.max_tilt) * degrees, 0) +
-                        "°, step to " + fixed(robot.max_step, 2) + " m, roughness to " +
-                        fixed(robot.max_roughness, 3) + " m";
-  if (costs.has(CostPart::kObstacle))
-    caption += ", free from " + fixed(robot.height + robot.overhead_reserve, 2) + " m on";
-  return caption;
+  const std::string slope = fixed(std::min(robot.max_climb, robot.max_tilt) * degrees, 0) + "°";
+  const std::string step = fixed(robot.max_step, 2) + " m";
+  const std::string roughness = fixed(robot.max_roughness, 3) + " m";
+  if (!costs.has(CostPart::kObstacle))
+    return "Costs: slope to " + slope + ", step to " + step + ", roughness to " + roughness;
+  return "Costs: to " + slope + ", steps " + step + ", roughness " + roughness + ", free above " +
+         fixed(robot.height + robot.overhead_reserve, 1) + " m";
 }
 
 /// The options with the reasons that the costs know.
