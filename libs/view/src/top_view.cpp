@@ -167,7 +167,8 @@ void draw_legend(Canvas& canvas, const TopViewLayout& layout, const Description&
   draw_legend_entry(canvas, indent, second, colour_of(CellKind::kGround),
                     "ground: " + grouped(counts.ground_cells));
   draw_legend_entry(canvas, indent + quarter + 10.0, second, colour_of(CellKind::kDropped),
-                    "in " + grouped(counts.dropped_groups) + " groups too small");
+                    "in " + grouped(counts.dropped_groups) +
+                        (counts.dropped_groups == 1 ? " group" : " groups") + " too small");
   const double third = second + 22.0;
   canvas.text(left, third, "not seen", kSmall);
   draw_unseen_legend(canvas, indent, third, width - 64.0, description.grid, options);
