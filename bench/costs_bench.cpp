@@ -99,9 +99,8 @@ void unseen_cells(benchmark::State& state) {
   FieldDescribed d;
   UnseenWorkspace workspace;
   std::vector<UnseenReason> reasons;
-  run_counted(state, [&] {
-    explain_unseen_cells(d.scan, d.workspace, d.description, workspace, reasons);
-  });
+  run_counted(
+      state, [&] { explain_unseen_cells(d.scan, d.workspace, d.description, workspace, reasons); });
   std::array<double, kUnseenReasonCount> cells{};
   for (const UnseenReason reason : reasons) cells[static_cast<std::size_t>(reason)] += 1.0;
   if (cells[0] == 0.0 || cells[2] == 0.0) state.SkipWithError("nothing seen, or nothing hidden");

@@ -174,7 +174,8 @@ TextTable identity_table(const std::vector<NamedScore>& scores) {
 TextTable cost_table(const std::vector<NamedScore>& scores) {
   using eval::TrueCell;
   TextTable table{
-      "Costs of observed cells, %; traversable ones: lethal, and of those with nothing else beside; "
+      "Costs of observed cells, %; traversable ones: lethal, and of those with nothing else "
+      "beside; "
       "lethal ones by kind: not lethal, of all: unknown, nothing lethal beside either",
       {"", "traversable", "lethal", "alone"},
       {},

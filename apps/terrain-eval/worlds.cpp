@@ -120,8 +120,8 @@ class Describer {
   }
   /// Of the scan described last.
   /// \param of_grid slope, step and roughness of the grid alone
-  void measure_costs(const ScanView& scan, const Description& description,
-                     const RobotParams& robot, bool of_grid, CellCosts& costs) {
+  void measure_costs(const ScanView& scan, const Description& description, const RobotParams& robot,
+                     bool of_grid, CellCosts& costs) {
     if (of_grid) {
       compute_cell_costs(description.grid, robot, cost_workspace_, costs);
       return;
@@ -170,11 +170,11 @@ class WorldQueue {
  private:
   [[nodiscard]] eval::MeasureCosts costs_by(Describer& describer) const {
     if (options_.costs.empty()) return {};
-    return [this, &describer](const ScanView& scan, const Description& description,
-                              CellCosts& costs) {
-      describer.measure_costs(scan, description, plan_.rules.costs.robot, options_.grid_costs,
-                              costs);
-    };
+    return
+        [this, &describer](const ScanView& scan, const Description& description, CellCosts& costs) {
+          describer.measure_costs(scan, description, plan_.rules.costs.robot, options_.grid_costs,
+                                  costs);
+        };
   }
   [[nodiscard]] eval::WorldScore score(std::size_t number, const eval::Describe& describe,
                                        eval::MeasureCosts costs) const {

@@ -58,8 +58,8 @@ void Outputs::add_rows(const view::ScanRecord& record, const Description& descri
 }
 
 void Outputs::write_views(const view::ScanRecord& record, const Points& points,
-                          const Description& description,
-                          const std::vector<UnseenReason>& unseen, const std::string& why) {
+                          const Description& description, const std::vector<UnseenReason>& unseen,
+                          const std::string& why) {
   const std::string stem = folder_ + "/" + scan_name(record.index);
   for (View& view : views_) {
     if (view.picture != stem + ".png") continue;

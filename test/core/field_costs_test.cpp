@@ -116,8 +116,9 @@ TEST(FieldCosts, FreeUnderWhatHangsAboveTheRobot) {
   EXPECT_EQ(World(ground_with(kThing, 1.0), tall).lethal_in(kPatch), 25);
 }
 
-// Where the ground under it was not seen, nothing is known; beside something that stands it is taken
-// for its upper part. Where the ground was seen beside, the cell is free, but costs what is hidden.
+// Where the ground under it was not seen, nothing is known; beside something that stands it is
+// taken for its upper part. Where the ground was seen beside, the cell is free, but costs what is
+// hidden.
 TEST(FieldCosts, WhatHangsOverUnseenGround) {
   Points points;
   worlds::add_flat(points, {-6.0, 1.0, -6.0, 6.0}, 0.05, 0.0);
@@ -505,8 +506,8 @@ TEST(FieldCosts, UnseenGroundCostsWhatItsReasonSays) {
   const RobotParams robot;
   CostWorkspace cost_workspace;
   CellCosts costs;
-  compute_cell_costs(description, described_points(points.view(), workspace), robot,
-                     cost_workspace, costs);
+  compute_cell_costs(description, described_points(points.view(), workspace), robot, cost_workspace,
+                     costs);
   EXPECT_EQ(cost_at(description.grid, costs, {6.1, 0.1}, robot).cost, 0.0) << "nobody has asked";
   UnseenWorkspace scratch;
   explain_unseen_cells(scan, workspace, description, scratch, costs.unseen);
@@ -531,7 +532,8 @@ double shared_area(Position2 centre, double cell, Position2 position, const Robo
     double u, v;
   };
   std::vector<Corner> polygon;
-  for (const auto& [sx, sy] : std::vector<std::pair<int, int>>{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+  for (const auto& [sx, sy] :
+       std::vector<std::pair<int, int>>{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
     const double dx = centre.x + 0.5 * cell * sx - position.x;
     const double dy = centre.y + 0.5 * cell * sy - position.y;
     polygon.push_back({std::cos(heading) * dx + std::sin(heading) * dy,
@@ -593,7 +595,8 @@ TEST(FootprintCost, OracleEveryCellThatSharesAreaWithTheFootprint) {
     for (int l = -9; l < geometry.cells_l() + 9; ++l) {
       for (int w = -9; w < geometry.cells_w() + 9; ++w) {
         const Position2 centre = geometry.centre_of({l, w});
-        if (std::abs(centre.x - position.x) > 2.0 || std::abs(centre.y - position.y) > 2.0) continue;
+        if (std::abs(centre.x - position.x) > 2.0 || std::abs(centre.y - position.y) > 2.0)
+          continue;
         if (!(shared_area(centre, 0.2, position, robot, heading) > 1e-12)) continue;
         const Cost cost = cost_at(world.description.grid, world.costs, centre, robot, heading);
         if (rank_of(cost.status) > rank_of(expected.status)) expected.status = cost.status;

@@ -38,7 +38,8 @@ TEST(CostScore, KindsOfCellsByHand) {
   EXPECT_EQ(kinds[4], TrueCell::kNotCounted);
   EXPECT_EQ(kinds[20], TrueCell::kSteep);
   EXPECT_EQ(kinds[24], TrueCell::kNotCounted);
-  for (const std::size_t k : {5U, 6U, 10U, 11U, 12U, 16U}) EXPECT_EQ(kinds[k], TrueCell::kEdge) << k;
+  for (const std::size_t k : {5U, 6U, 10U, 11U, 12U, 16U})
+    EXPECT_EQ(kinds[k], TrueCell::kEdge) << k;
   EXPECT_EQ(kinds[8], TrueCell::kTraversable);
 }
 

@@ -89,8 +89,7 @@ TEST(CostView, CellsThatWereNotObservedHaveTheColourOfTheReason) {
   write_cost_view(file, world.description, world.costs, world.robot, options);
   mrpt::img::CImage image;
   ASSERT_TRUE(image.loadFromFile(file));
-  const TopViewLayout layout =
-      top_view_layout(geometry, options.max_width, options.max_height);
+  const TopViewLayout layout = top_view_layout(geometry, options.max_width, options.max_height);
   EXPECT_EQ(pixel_at(image, layout.classes, {4.5, 4.5}), kOccludedColour);
   EXPECT_EQ(pixel_at(image, layout.classes, {2.5, 2.5}), kLethalColour);
 }

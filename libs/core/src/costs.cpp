@@ -540,8 +540,7 @@ void add_field_parts(const CellCosts& costs, std::size_t slot, const RobotParams
   parts.unknown = cost_of_unseen(costs.ground[slot], robot).parts.unknown;
   if (costs.hole[slot] < 0) return;
   const HoleExtent& hole = costs.holes[static_cast<std::size_t>(costs.hole[slot])];
-  const double drop =
-      wheel_drop(static_cast<double>(hole.depth), across(hole), robot.wheel_radius);
+  const double drop = wheel_drop(static_cast<double>(hole.depth), across(hole), robot.wheel_radius);
   parts.pothole = believed(drop / robot.max_step, static_cast<double>(hole.confidence));
 }
 
@@ -582,8 +581,8 @@ Cost cost_in(const ElevationGrid& grid, const CellCosts& costs, CellIndex cell,
              const RobotParams& robot, CostOfSlot&& cost) {
   const Slot slot = grid.slot_at(cell);
   if (slot != kUnobserved || costs.unseen.empty()) return cost(slot);
-  return cost_of_unseen(
-      costs.unseen[static_cast<std::size_t>(value_of(grid.geometry.id_of(cell)))], robot);
+  return cost_of_unseen(costs.unseen[static_cast<std::size_t>(value_of(grid.geometry.id_of(cell)))],
+                        robot);
 }
 
 // The same at a position.
@@ -598,7 +597,7 @@ Cost at_position(const ElevationGrid& grid, const CellCosts& costs, Position2 po
 /// The robot from above.
 struct FootprintBox {
   Position2 centre;
-  double c, s;                    // of the heading
+  double c, s;                     // of the heading
   double half_length, half_width;  // metres
 
   // Half extents along the axes of the grid.

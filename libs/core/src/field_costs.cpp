@@ -27,8 +27,8 @@ CellMix mix_of(const Description& description, const CellCosts& costs, std::size
   if (costs.hole[slot] >= 0) return CellMix::kHole;
   if (description.field.deck[slot] >= 0) return CellMix::kDeck;
   if (description.ground.rule[slot] == GroundRule::kLow) return CellMix::kLow;
-  const bool ground = description.ground.rule[slot] == GroundRule::kGround &&
-                      description.field.below[slot] == 0;
+  const bool ground =
+      description.ground.rule[slot] == GroundRule::kGround && description.field.below[slot] == 0;
   return ground ? CellMix::kNone : CellMix::kGround;
 }
 
@@ -248,8 +248,9 @@ void let_stand(const Input& in, std::size_t slot, const DrivableCells& cells, Ce
 
 float likelihood_of(const Description& description, std::size_t slot, std::int32_t standing) {
   const std::int32_t cluster = description.clusters.cluster_of[slot];
-  const double known =
-      cluster == kNoCluster ? 0.0 : description.things[static_cast<std::size_t>(cluster)].confidence;
+  const double known = cluster == kNoCluster
+                           ? 0.0
+                           : description.things[static_cast<std::size_t>(cluster)].confidence;
   return static_cast<float>(known > 0.0 ? known : confidence_of(std::max(standing, 1), 0.0));
 }
 
@@ -302,8 +303,7 @@ void measure_from_feet(const Input& in, const DrivableCells& cells, CellCosts& c
     if (cell.foot_points == 0) continue;
     const float rise = cell.top - cell.foot / static_cast<float>(cell.foot_points);
     if (rise <= costs.obstacle[slot]) continue;
-    costs.obstacle[slot] =
-        std::max(costs.obstacle[slot], rise - rise_across(in.description, slot));
+    costs.obstacle[slot] = std::max(costs.obstacle[slot], rise - rise_across(in.description, slot));
   }
 }
 
@@ -337,7 +337,8 @@ void compute_cell_costs(const Description& description, const DescribedPoints& s
     add_from_cells(in, cells, costs);
   }
   finish_cells(in, cells, costs);
-  measure_ground({description.grid, {cells.sums, &cells.skipped}, &cells.extent}, robot, workspace, costs);
+  measure_ground({description.grid, {cells.sums, &cells.skipped}, &cells.extent}, robot, workspace,
+                 costs);
   measure_from_feet(in, cells, costs);
   measure_doubt(cells, costs);
 }

@@ -9,8 +9,8 @@ namespace mrpt_terrain {
 
 /// Points of which the ground consists; borrowed.
 struct GroundPoints {
-  const ElevationGrid& grid;  ///< which cells are observed
-  CellSelection cells;        ///< their points; cells may have none
+  const ElevationGrid& grid;                   ///< which cells are observed
+  CellSelection cells;                         ///< their points; cells may have none
   const std::vector<float>* extent = nullptr;  ///< per slot: highest less lowest; null: the grid's
 };
 

@@ -27,7 +27,8 @@ float angle_of(float dx, float dy) {
   if (!(longer > 0.0F)) return 0.0F;
   const float t = std::min(ax, ay) / longer;
   const float q = t * t;
-  const float part = (((0.0208660F * q - 0.0851982F) * q + 0.1801866F) * q - 0.3303112F) * q + 0.9998667F;
+  const float part =
+      (((0.0208660F * q - 0.0851982F) * q + 0.1801866F) * q - 0.3303112F) * q + 0.9998667F;
   constexpr auto kPi = static_cast<float>(M_PI);
   float angle = part * t;
   if (ay > ax) angle = 0.5F * kPi - angle;
@@ -122,10 +123,11 @@ void collect_things(const ScanView& scan, const DescriptionWorkspace& reference,
     workspace.first[sector + 1] = workspace.first[sector] + workspace.count[sector];
   workspace.things.resize(static_cast<std::size_t>(workspace.first[kSectors]));
   std::copy(workspace.first.begin(), workspace.first.end() - 1, workspace.count.begin());
-  for_standing(scan, reference, description, workspace.places, [&](int sector, float range, float top) {
-    const auto at = workspace.count[static_cast<std::size_t>(sector)]++;
-    workspace.things[static_cast<std::size_t>(at)] = {range, top};
-  });
+  for_standing(scan, reference, description, workspace.places,
+               [&](int sector, float range, float top) {
+                 const auto at = workspace.count[static_cast<std::size_t>(sector)]++;
+                 workspace.things[static_cast<std::size_t>(at)] = {range, top};
+               });
   for (std::size_t sector = 0; sector < kSectors; ++sector) {
     const auto begin = workspace.things.begin() + workspace.first[sector];
     const auto end = workspace.things.begin() + workspace.first[sector + 1];

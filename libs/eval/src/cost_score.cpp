@@ -142,8 +142,7 @@ void add_costs(const ElevationGrid& grid, const CellCosts& costs, const GridGeom
       const std::size_t k = number_of(middle, cell);
       const Position2 centre = middle.centre_of(cell);
       CellIndex place;
-      if (kinds[k] == TrueCell::kNotCounted ||
-          !grid.geometry.cell_at(centre.x, centre.y, place) ||
+      if (kinds[k] == TrueCell::kNotCounted || !grid.geometry.cell_at(centre.x, centre.y, place) ||
           grid.slot_at(place) == kUnobserved) {
         continue;
       }

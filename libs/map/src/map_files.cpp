@@ -98,8 +98,8 @@ CostImage cost_image(const TerrainSnapshot& snapshot, std::optional<CostPart> pa
       const double y = image.corner.y + (image.height - row - 0.5) * image.cell_size;
       const Cost cost = snapshot.cost_at(x, y);
       // The cost of not knowing is known where nothing else is.
-      const bool known = is_known(cost) ||
-                         (part == CostPart::kUnknown && cost.status == CostStatus::kUnknown);
+      const bool known =
+          is_known(cost) || (part == CostPart::kUnknown && cost.status == CostStatus::kUnknown);
       image.pixels.push_back(known ? per_cent(part ? cost.parts.of(*part) : cost.cost) : kUnknown);
     }
   }
@@ -124,8 +124,7 @@ void save_cost_map(const CostImage& image, const std::string& prefix, const std:
 void save_layers(const TerrainSnapshot& snapshot, const std::string& prefix) {
   if (snapshot.revision == 0 || !snapshot.costs.has(CostPart::kObstacle)) return;
   for (const auto& entry : enum_names(CostPart{})) {
-    save_cost_map(cost_image(snapshot, entry.value), prefix,
-                  std::string("_cost_") + entry.name);
+    save_cost_map(cost_image(snapshot, entry.value), prefix, std::string("_cost_") + entry.name);
   }
 }
 
@@ -135,15 +134,16 @@ void save_holes(const TerrainSnapshot& snapshot, const std::string& file) {
   for (std::size_t k = 0; k < description.holes.size(); ++k) {
     const HoleDescription& hole = description.holes[k];
     const std::int32_t cluster = view::cluster_of(description, hole);
-    const double z = hole.slot < 0 ? 0.0
-                                   : static_cast<double>(
-                                         description.grid.h_mean[static_cast<std::size_t>(hole.slot)]);
+    const double z =
+        hole.slot < 0
+            ? 0.0
+            : static_cast<double>(description.grid.h_mean[static_cast<std::size_t>(hole.slot)]);
     const Eigen::Vector3d at =
         snapshot.T_map_window * Eigen::Vector3d(hole.centre.x, hole.centre.y, z);
     csv += std::to_string(k) + "," + (cluster == kNoCluster ? "" : std::to_string(cluster));
-    for (const double value : {at.x(), at.y(), at.z(), hole.length, hole.width, hole.depth,
-                               static_cast<double>(hole.points), static_cast<double>(hole.rings),
-                               hole.confidence}) {
+    for (const double value :
+         {at.x(), at.y(), at.z(), hole.length, hole.width, hole.depth,
+          static_cast<double>(hole.points), static_cast<double>(hole.rings), hole.confidence}) {
       csv += "," + shortest(value);
     }
     csv += "\n";

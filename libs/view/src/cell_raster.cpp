@@ -174,8 +174,8 @@ Raster<UnseenReason> unseen_raster(const ElevationGrid& grid,
   return raster;
 }
 
-std::array<std::size_t, kUnseenReasonCount> count_unseen(
-    const ElevationGrid& grid, const std::vector<UnseenReason>& reasons) {
+std::array<std::size_t, kUnseenReasonCount> count_unseen(const ElevationGrid& grid,
+                                                         const std::vector<UnseenReason>& reasons) {
   std::array<std::size_t, kUnseenReasonCount> counts{};
   for (int l = 0; l < grid.geometry.cells_l(); ++l) {
     for (int w = 0; w < grid.geometry.cells_w(); ++w) {

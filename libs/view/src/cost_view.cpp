@@ -102,8 +102,8 @@ TopViewOptions with_unseen(const TopViewOptions& options, const CellCosts& costs
 }
 
 constexpr int kSheetColumns = 4;
-constexpr int kSheetGap = 14;      // pixels
-constexpr int kSheetTitle = 30;    // above each map
+constexpr int kSheetGap = 14;    // pixels
+constexpr int kSheetTitle = 30;  // above each map
 constexpr int kSheetMargin = 24;
 constexpr int kSheetHead = 44;
 constexpr int kSheetKey = 60;
@@ -139,7 +139,8 @@ MapPanel panel_of_sheet(const MapPanel& extent, std::size_t k, int width, int he
   MapPanel panel = extent;
   panel.width = width;
   panel.height = height;
-  const auto column = static_cast<int>(k) % kSheetColumns, row = static_cast<int>(k) / kSheetColumns;
+  const auto column = static_cast<int>(k) % kSheetColumns,
+             row = static_cast<int>(k) / kSheetColumns;
   panel.left = kSheetMargin + column * (width + kSheetGap);
   panel.top = kSheetHead + kSheetTitle + row * (height + kSheetTitle + kSheetGap);
   return panel;
@@ -211,7 +212,8 @@ void write_cost_layers(const std::string& file, const Description& description,
       top_view_layout(description.grid.geometry, options.max_width, options.max_height).classes;
   const std::vector<Layer> layers = layers_of(costs, costs_of(costs, robot));
   const int room = (options.max_width - 2 * kSheetMargin - (kSheetColumns - 1) * kSheetGap);
-  const double scale = static_cast<double>(room / kSheetColumns) / std::max(extent.width, extent.height);
+  const double scale =
+      static_cast<double>(room / kSheetColumns) / std::max(extent.width, extent.height);
   const int width = std::max(1, static_cast<int>(scale * extent.width));
   const int height = std::max(1, static_cast<int>(scale * extent.height));
   const int rows = (static_cast<int>(layers.size()) + kSheetColumns - 1) / kSheetColumns;

@@ -65,9 +65,8 @@ struct RobotParams {
     visit(self.least_confidence,
           ParamInfo{"least_confidence", "", "", 0.0, 1.0,
                     "field mode: things and holes with less confidence are not lethal"});
-    visit(self.cost_out_of_view,
-          ParamInfo{"cost_out_of_view", "", "", 0.0, 0.99,
-                    "field mode: cost of ground that no beam points at"});
+    visit(self.cost_out_of_view, ParamInfo{"cost_out_of_view", "", "", 0.0, 0.99,
+                                           "field mode: cost of ground that no beam points at"});
     visit(self.cost_occluded, ParamInfo{"cost_occluded", "", "", 0.0, 0.99,
                                         "field mode: cost of ground behind or under something"});
     visit(self.cost_no_return,

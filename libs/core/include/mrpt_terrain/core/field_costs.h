@@ -32,9 +32,9 @@ struct DescribedPoints {
 /// * Ground: kOccluded where a cell has points, but none that a wheel can rest on.
 ///
 /// Without points, cells that hold ground and other things are taken as level ground at their
-/// `FieldCells::floor`, and what is above it as one piece from the lowest to the highest point. `CellCosts::unseen` is left empty:
-/// `explain_unseen_cells` fills it in. The same input gives the same bytes; results that keep their
-/// memory do not allocate.
+/// `FieldCells::floor`, and what is above it as one piece from the lowest to the highest point.
+/// `CellCosts::unseen` is left empty: `explain_unseen_cells` fills it in. The same input gives the
+/// same bytes; results that keep their memory do not allocate.
 void compute_cell_costs(const Description& description, const DescribedPoints& scan,
                         const RobotParams& robot, CostWorkspace& workspace, CellCosts& costs);
 

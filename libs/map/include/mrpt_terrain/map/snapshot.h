@@ -76,8 +76,8 @@ class TerrainSnapshot {
   std::vector<std::array<float, 3>> ray_origins;
   std::vector<std::uint32_t> origin_of;
   std::vector<ClusterView> clusters;  ///< one per `description.things`, same numbers
-  CellCosts costs;  ///< per slot of the description's grid; `unseen` per cell of it
-  RobotParams robot;                  ///< that the costs are for
+  CellCosts costs;    ///< per slot of the description's grid; `unseen` per cell of it
+  RobotParams robot;  ///< that the costs are for
 
   /// With `fusion = rolling`: all cells of the map, also those beyond the window, how they are
   /// read, and what else is known of the window's (per slot). Empty with `fusion = scan`.
@@ -94,8 +94,8 @@ class TerrainSnapshot {
   [[nodiscard]] Cost cost_at(double x, double y, double heading) const;
   /// The same for the worst heading.
   [[nodiscard]] Cost cost_at(double x, double y) const;
-  /// Cost of standing at (x, y) of the map, looking along `heading`: the worst of all cells that the
-  /// robot's footprint touches (costs.h).
+  /// Cost of standing at (x, y) of the map, looking along `heading`: the worst of all cells that
+  /// the robot's footprint touches (costs.h).
   [[nodiscard]] Cost footprint_cost_at(double x, double y, double heading) const;
 
   /// Indices of the clusters whose boxes touch a box, ascending.

@@ -43,9 +43,9 @@ enum class CellKind : std::uint8_t {
     const ElevationGrid& grid, int width, int height,
     const std::function<bool(std::size_t a, std::size_t b)>& less);
 
-/// Reasons why cells were not observed the same way; kSeen where a cell of the pixel is observed. Of
-/// several, occluded shows before no return and that before out of view.
-/// \param reasons per `CellId` of the grid
+/// Reasons why cells were not observed the same way; kSeen where a cell of the pixel is observed.
+/// Of several, occluded shows before no return and that before out of view. \param reasons per
+/// `CellId` of the grid
 [[nodiscard]] Raster<UnseenReason> unseen_raster(const ElevationGrid& grid,
                                                  const std::vector<UnseenReason>& reasons,
                                                  int width, int height);

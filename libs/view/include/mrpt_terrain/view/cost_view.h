@@ -14,8 +14,8 @@ namespace mrpt_terrain::view {
 
 /// Writes a PNG like `write_top_view`, with the costs of the cells for the worst heading in place
 /// of the classes: heights and costs, one scale, a legend with the numbers of cells. \param costs
-/// of the description's grid; its `unseen` colours cells that were not observed \param robot that the
-/// costs are for
+/// of the description's grid; its `unseen` colours cells that were not observed \param robot that
+/// the costs are for
 void write_cost_view(const std::string& file, const Description& description,
                      const CellCosts& costs, const RobotParams& robot,
                      const TopViewOptions& options);

@@ -32,7 +32,8 @@ inline constexpr Rgb kUnknownColour{214, 214, 214};
 /// Cells that no point has hit.
 inline constexpr Rgb kUnobservedColour{255, 255, 255};
 
-/// Cells whose ground was not seen, where it is known why: pale, and paler the less there is to know.
+/// Cells whose ground was not seen, where it is known why: pale, and paler the less there is to
+/// know.
 inline constexpr Rgb kOutOfViewColour{240, 232, 214};
 inline constexpr Rgb kOccludedColour{198, 202, 214};
 
