@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <array>
 #include <cmath>
 
 #include "bench_support.h"
 #include "mrpt_terrain/core/costs.h"
+#include "mrpt_terrain/core/field_costs.h"
+#include "mrpt_terrain/core/unseen_cells.h"
 
 namespace mrpt_terrain::bench {
 namespace {
@@ -50,6 +53,81 @@ void cell_costs(benchmark::State& state) {
   count_costs(costs, robot, state);
 }
 BENCHMARK(cell_costs)->Unit(benchmark::kMicrosecond)->Arg(20)->Arg(10)->Arg(5);
+
+/// The benchmark scan in field mode, with the sensor of the data set over the robot's origin.
+struct FieldDescribed {
+  DescriptionParams params = benchmark_params();
+  DescriptionWorkspace workspace;
+  Description description;
+  std::array<float, 3> origin{0.0F, 0.0F, 1.73F};
+  ScanView scan{Described::points(), {&origin, nullptr}};
+  FieldDescribed() {
+    params.description.mode = DescriptionMode::kField;
+    params.grid.max_height = 3.0;
+    params.slope.method = SlopeMethod::kBeam;
+    describe(scan, params, workspace, description);
+  }
+};
+
+// Of the benchmark scan as field mode describes it.
+void field_cell_costs(benchmark::State& state) {
+  FieldDescribed d;
+  const RobotParams robot;
+  CostWorkspace workspace;
+  CellCosts costs;
+  const DescribedPoints points = described_points(d.scan.points, d.workspace);
+  compute_cell_costs(d.description, points, robot, workspace, costs);
+  if (!is_sane(d.description.grid, costs, robot)) state.SkipWithError("no sane costs");
+  run_counted(state, [&] { compute_cell_costs(d.description, points, robot, workspace, costs); });
+  count_costs(costs, robot, state);
+}
+BENCHMARK(field_cell_costs)->Unit(benchmark::kMicrosecond);
+
+// Of the same grid, slope, step and roughness alone.
+void grid_cell_costs(benchmark::State& state) {
+  FieldDescribed d;
+  const RobotParams robot;
+  CostWorkspace workspace;
+  CellCosts costs;
+  run_counted(state, [&] { compute_cell_costs(d.description.grid, robot, workspace, costs); });
+  count_costs(costs, robot, state);
+}
+BENCHMARK(grid_cell_costs)->Unit(benchmark::kMicrosecond);
+
+// Why cells were not seen.
+void unseen_cells(benchmark::State& state) {
+  FieldDescribed d;
+  UnseenWorkspace workspace;
+  std::vector<UnseenReason> reasons;
+  run_counted(
+      state, [&] { explain_unseen_cells(d.scan, d.workspace, d.description, workspace, reasons); });
+  std::array<double, kUnseenReasonCount> cells{};
+  for (const UnseenReason reason : reasons) cells[static_cast<std::size_t>(reason)] += 1.0;
+  if (cells[0] == 0.0 || cells[2] == 0.0) state.SkipWithError("nothing seen, or nothing hidden");
+  for (const auto& entry : enum_names(UnseenReason{})) {
+    state.counters[entry.name] = cells[static_cast<std::size_t>(entry.value)];
+  }
+}
+BENCHMARK(unseen_cells)->Unit(benchmark::kMicrosecond);
+
+// One query of a planner for the whole robot, in a heading.
+void footprint_in_heading(benchmark::State& state) {
+  FieldDescribed d;
+  const RobotParams robot;
+  CostWorkspace workspace;
+  CellCosts costs;
+  compute_cell_costs(d.description, described_points(d.scan.points, d.workspace), robot, workspace,
+                     costs);
+  double sum = 0.0;
+  int k = 0;
+  run_counted(state, [&] {
+    const Position2 position{-20.0 + 0.37 * (k % 100), -20.0 + 0.41 * (k % 97)};
+    sum += footprint_cost_at(d.description.grid, costs, position, robot, 0.01 * k).cost;
+    k = (k + 1) % 9700;
+  });
+  benchmark::DoNotOptimize(sum);
+}
+BENCHMARK(footprint_in_heading)->Unit(benchmark::kNanosecond);
 
 // One query of a planner, in a heading.
 void cost_in_heading(benchmark::State& state) {

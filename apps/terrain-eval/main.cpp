@@ -101,6 +101,14 @@ CLI::App& add_worlds(CLI::App& app, WorldsOptions& options) {
       .add_option("--things", options.things,
                   "List of all true things and of clusters that are none")
       ->type_name("FILE.csv");
+  CLI::Option* costs = command.add_option(
+      "--costs", options.costs,
+      "Also judge the costs of cells for a robot, as in params/robots; implies --level");
+  costs->type_name("ROBOT.ini");
+  command
+      .add_flag("--grid-costs", options.grid_costs,
+                "Of these, slope, step and roughness of the grid alone, as in paper mode")
+      ->needs(costs);
   add_common(command, options.common);
   return command;
 }

@@ -40,6 +40,8 @@ struct WorldsOptions {
   bool level = false;
   std::string false_potholes;  ///< CSV; empty: none
   std::string things;          ///< CSV; empty: none
+  std::string costs;           ///< robot file; empty: costs are not looked at
+  bool grid_costs = false;     ///< costs of the grid alone
 };
 
 struct LabelledOptions {

@@ -6,6 +6,7 @@
 
 #include "eval_params.h"
 #include "mrpt_terrain/params/data_files.h"
+#include "mrpt_terrain/params/ini.h"
 
 using namespace mrpt_terrain;
 
@@ -63,7 +64,7 @@ eval::ScanOptions scan_options(const WorldsOptions& options, const AppParams& pa
   result.speed = options.speed;
   result.noise_seed = options.noise_seed;
   result.skewed = options.skewed || !params.input.deskew;
-  result.level = options.level;
+  result.level = options.level || !options.costs.empty();
   result.pitch = options.common.pitch_deg * kDegree;
   result.raise = options.common.raise;
   result.radius = options.common.radius;
@@ -82,5 +83,6 @@ Plan make_plan(const WorldsOptions& options) {
   plan.families = load_families(options.families);
   plan.scans = scan_options(options, params);
   plan.description = params.description;
+  if (!options.costs.empty()) params::load_ini(options.costs, plan.rules.costs.robot);
   return plan;
 }

@@ -2,6 +2,7 @@
 #include "report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "report_text.h"
@@ -170,6 +171,39 @@ TextTable identity_table(const std::vector<NamedScore>& scores) {
   return table;
 }
 
+TextTable cost_table(const std::vector<NamedScore>& scores) {
+  using eval::TrueCell;
+  TextTable table{
+      "Costs of observed cells, %; traversable ones: lethal, and of those with nothing else "
+      "beside; "
+      "lethal ones by kind: not lethal, of all: unknown, nothing lethal beside either",
+      {"", "traversable", "lethal", "alone"},
+      {},
+      ""};
+  constexpr std::array<TrueCell, 4> kLethal{TrueCell::kObstacle, TrueCell::kHole, TrueCell::kEdge,
+                                            TrueCell::kSteep};
+  for (const TrueCell kind : kLethal) {
+    table.header.emplace_back(name_of(kind));
+    table.header.emplace_back("open");
+    table.header.emplace_back("unknown");
+    table.header.emplace_back("all open");
+  }
+  for (const NamedScore& entry : scores) {
+    const eval::CostScore& score = entry.score.costs;
+    Row row{entry.name, count(score.blocked.total), percent(score.blocked),
+            percent(score.blocked_free)};
+    for (const TrueCell kind : kLethal) {
+      const auto k = static_cast<std::size_t>(kind);
+      row.push_back(count(score.open[k].total));
+      row.push_back(percent(score.open[k]));
+      row.push_back(percent(score.unknown[k]));
+      row.push_back(percent(score.all_open[k]));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 TextTable run_table(const std::vector<NamedScore>& scores) {
   TextTable table{"Scans", {"", "worlds", "scans", "points", "ms per scan"}, {}, ""};
   for (const NamedScore& entry : scores) {
@@ -211,6 +245,7 @@ std::vector<TextTable> world_tables(const std::vector<NamedScore>& scores, bool 
   }
   const WorldScore& all = scores.back().score;
   if (all.identities.objects > 0) tables.push_back(identity_table(scores));
+  if (all.costs.blocked.total > 0) tables.push_back(cost_table(scores));
   if (!all.potholes.wrong.empty()) tables.push_back(false_table(all, details));
   return tables;
 }

@@ -98,6 +98,19 @@ void add_identities(const eval::IdentityScore& score, Lines& lines) {
   lines.add("identity_kept", "found", score.kept_where_found);
 }
 
+void add_costs(const eval::CostScore& score, Lines& lines) {
+  if (score.blocked.total == 0) return;
+  lines.add("cost_lethal", "traversable", score.blocked);
+  lines.add("cost_lethal", "traversable alone", score.blocked_free);
+  for (const auto& entry : enum_names(eval::TrueCell{})) {
+    if (entry.value <= eval::TrueCell::kTraversable) continue;
+    const auto k = static_cast<std::size_t>(entry.value);
+    lines.add("cost_not_lethal", entry.name, score.open[k]);
+    lines.add("cost_unknown", entry.name, score.unknown[k]);
+    lines.add("cost_nothing_lethal_beside", entry.name, score.all_open[k]);
+  }
+}
+
 const char* const kHeader = "name,metric,group,value,count\n";
 
 }  // namespace
@@ -118,6 +131,7 @@ std::string world_csv(const std::vector<NamedScore>& scores) {
     add_errors("slope_direction", eval::direction_summary(score.slopes), lines);
     add_potholes(score.potholes, lines);
     add_identities(score.identities, lines);
+    add_costs(score.costs, lines);
     text += lines.text();
   }
   return text;

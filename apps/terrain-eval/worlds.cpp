@@ -12,6 +12,7 @@
 #include "dump.h"
 #include "eval_params.h"
 #include "exit_code.h"
+#include "mrpt_terrain/core/field_costs.h"
 #include "mrpt_terrain/eval/world_score.h"
 #include "mrpt_terrain/files/atomic_file.h"
 #include "mrpt_terrain/params/data_files.h"
@@ -30,10 +31,22 @@ class Describer {
   void operator()(const ScanView& scan, Description& description) {
     describe(scan, params_, workspace_, description);
   }
+  /// Of the scan described last.
+  /// \param of_grid slope, step and roughness of the grid alone
+  void measure_costs(const ScanView& scan, const Description& description, const RobotParams& robot,
+                     bool of_grid, CellCosts& costs) {
+    if (of_grid) {
+      compute_cell_costs(description.grid, robot, cost_workspace_, costs);
+      return;
+    }
+    compute_cell_costs(description, described_points(scan.points, workspace_), robot,
+                       cost_workspace_, costs);
+  }
 
  private:
   const DescriptionParams& params_;
   DescriptionWorkspace workspace_;
+  CostWorkspace cost_workspace_;
 };
 
 /// Worlds that several threads take from one counter; scores are kept by number.
@@ -49,7 +62,7 @@ class WorldQueue {
       while (!stop_ && !stop_requested()) {
         const std::size_t number = next_++;
         if (number >= scores_.size()) break;
-        scores_[number] = score(number, describe);
+        scores_[number] = score(number, describe, costs_by(describer));
         ++done_;
       }
     } catch (...) {
@@ -68,7 +81,16 @@ class WorldQueue {
   }
 
  private:
-  [[nodiscard]] eval::WorldScore score(std::size_t number, const eval::Describe& describe) const {
+  [[nodiscard]] eval::MeasureCosts costs_by(Describer& describer) const {
+    if (options_.costs.empty()) return {};
+    return
+        [this, &describer](const ScanView& scan, const Description& description, CellCosts& costs) {
+          describer.measure_costs(scan, description, plan_.rules.costs.robot, options_.grid_costs,
+                                  costs);
+        };
+  }
+  [[nodiscard]] eval::WorldScore score(std::size_t number, const eval::Describe& describe,
+                                       eval::MeasureCosts costs) const {
     const std::size_t family = number / plan_.worlds_per_family();
     const std::uint64_t seed = plan_.seeds.first + number % plan_.worlds_per_family();
     eval::ScoredScanListener listener;
@@ -78,7 +100,7 @@ class WorldQueue {
     }
     return eval::score_world({plan_.families[family], seed, options_.scans, options_.approach,
                               !options_.things.empty(), options_.follow, TrackingParams{},
-                              plan_.scans, plan_.rules, describe, listener});
+                              plan_.scans, plan_.rules, describe, listener, std::move(costs)});
   }
 
   const Plan& plan_;

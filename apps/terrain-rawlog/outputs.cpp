@@ -40,19 +40,26 @@ Outputs::Outputs(std::string folder, const AppParams& params)
       scans_(folder_ + "/scans.csv") {
   view::write_clusters_csv_header(clusters_.stream());
   view::write_scans_csv_header(scans_.stream());
+  if (params_.description.mode == DescriptionMode::kField) {
+    holes_ = std::make_unique<files::WholeFile>(folder_ + "/holes.csv");
+    view::write_holes_csv_header(holes_->stream());
+  }
   files::write_atomically(folder_ + "/params.ini", params::dump_ini(params));
 }
 
 void Outputs::add_rows(const view::ScanRecord& record, const Description& description) {
   view::write_clusters_csv(clusters_.stream(), record, description);
   view::write_scans_csv(scans_.stream(), record);
-  if (!clusters_.stream().flush() || !scans_.stream().flush()) {
+  if (holes_) view::write_holes_csv(holes_->stream(), record, description);
+  const bool holes_fail = holes_ && !holes_->stream().flush();
+  if (!clusters_.stream().flush() || !scans_.stream().flush() || holes_fail) {
     throw std::runtime_error(folder_ + ": the tables cannot be written (is the disk full?)");
   }
 }
 
 void Outputs::write_views(const view::ScanRecord& record, const Points& points,
-                          const Description& description, const std::string& why) {
+                          const Description& description, const std::vector<UnseenReason>& unseen,
+                          const std::string& why) {
   const std::string stem = folder_ + "/" + scan_name(record.index);
   for (View& view : views_) {
     if (view.picture != stem + ".png") continue;
@@ -65,6 +72,7 @@ void Outputs::write_views(const view::ScanRecord& record, const Points& points,
   options.scan_index = record.index;
   options.stamp = record.stamp;
   options.params = params_;
+  options.unseen = &unseen;
   view::write_top_view(stem + ".png", description, options);
   view::write_scene(stem + ".3Dscene", description, points.view());
   io::write_labelled_ply(stem + ".ply", points.view(), description.labels, label_colours());
@@ -73,5 +81,6 @@ void Outputs::write_views(const view::ScanRecord& record, const Points& points,
 void Outputs::finish(const view::RunSummary& summary) {
   clusters_.commit();
   scans_.commit();
+  if (holes_) holes_->commit();
   files::write_atomically(folder_ + "/summary.json", view::summary_json(summary));
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app_params.h"
+#include "mrpt_terrain/core/unseen_reason.h"
 #include "mrpt_terrain/files/whole_file.h"
 #include "mrpt_terrain/io/ply.h"
 #include "mrpt_terrain/view/run_summary.h"
@@ -16,6 +18,7 @@ struct DrawableScan {
   mrpt_terrain::view::ScanRecord record;
   mrpt_terrain::Points points;
   mrpt_terrain::Description description;
+  std::vector<mrpt_terrain::UnseenReason> unseen;  ///< per `CellId`; empty in paper mode
 };
 
 /// A scan that was drawn.
@@ -38,7 +41,8 @@ class Outputs {
                 const mrpt_terrain::Description& description);
   /// Writes `scan_NNNNNN.png`, `.3Dscene` and `.ply`, once per scan; `why` is for the user.
   void write_views(const mrpt_terrain::view::ScanRecord& record, const mrpt_terrain::Points& points,
-                   const mrpt_terrain::Description& description, const std::string& why);
+                   const mrpt_terrain::Description& description,
+                   const std::vector<mrpt_terrain::UnseenReason>& unseen, const std::string& why);
   /// Completes the tables and writes `summary.json`.
   void finish(const mrpt_terrain::view::RunSummary& summary);
 
@@ -50,5 +54,6 @@ class Outputs {
   mrpt_terrain::DescriptionParams params_;
   mrpt_terrain::files::WholeFile clusters_;
   mrpt_terrain::files::WholeFile scans_;
+  std::unique_ptr<mrpt_terrain::files::WholeFile> holes_;  ///< in field mode
   std::vector<View> views_;
 };

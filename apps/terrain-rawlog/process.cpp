@@ -7,6 +7,7 @@
 
 #include "app_params.h"
 #include "exit_code.h"
+#include "mrpt_terrain/core/unseen_cells.h"
 #include "mrpt_terrain/view/run_summary.h"
 #include "mrpt_terrain/view/tables.h"
 #include "mrpt_terrain/view/text.h"
@@ -56,7 +57,8 @@ void print_scan(const view::ScanRecord& record, Run& run) {
   if (!run.reading.messages.shows(Verbosity::kInfo)) return;
   const Description& description = run.describer.description;
   run.reading.messages.info(scan_title(record) + "\n" + view::class_summary(description) + "\n" +
-                            view::cluster_table(description, run.options.table_rows) + "\n");
+                            view::cluster_table(description, run.options.table_rows) +
+                            view::hole_table(description, run.options.table_rows) + "\n");
   run.reading.messages.debug("milliseconds: reading " + view::fixed(record.milliseconds.io, 2) +
                              ", total " + view::fixed(record.milliseconds.total, 2) + "\n\n");
 }
@@ -69,20 +71,31 @@ double trouble(const view::ScanRecord& record) {
   return in_map == 0 ? 1.0 : 1.0 - static_cast<double>(ground) / static_cast<double>(in_map);
 }
 
+// Of the scan that was described last; nothing in paper mode.
+std::vector<UnseenReason> unseen_cells(Run& run) {
+  std::vector<UnseenReason> reasons;
+  if (run.describer.params.description.mode != DescriptionMode::kField) return reasons;
+  UnseenWorkspace workspace;
+  explain_unseen_cells(view_of(run.reading.pipeline.scan), run.describer.workspace,
+                       run.describer.description, workspace, reasons);
+  return reasons;
+}
+
 void keep_for_views(const view::ScanRecord& record, Run& run) {
   const Description& description = run.describer.description;
   const Points& points = run.reading.pipeline.scan.points;
   if (run.options.every != 0) {
     if (record.index % run.options.every == 0) {
-      run.outputs.write_views(record, points, description, "scan " + std::to_string(record.index));
+      run.outputs.write_views(record, points, description, unseen_cells(run),
+                              "scan " + std::to_string(record.index));
     }
   } else if (record.index == 0) {
-    run.outputs.write_views(record, points, description, "first scan");
+    run.outputs.write_views(record, points, description, unseen_cells(run), "first scan");
   }
   const double share = trouble(record);
   if (share > run.worst_share) {
     run.worst_share = share;
-    if (run.options.every == 0) run.worst = {record, points, description};
+    if (run.options.every == 0) run.worst = {record, points, description, unseen_cells(run)};
     run.reading.summary.worst_scan = view::ScanReference{
         record.file, record.entry, record.index,
         view::fixed(100 * share, 1) + " % of its points in the map are not ground"};
@@ -102,9 +115,10 @@ void process_scan(view::ScanRecord& record, Run& run) {
 
 void write_last_views(Run& run) {
   if (run.reading.summary.scans_processed == 0 || run.options.every != 0) return;
-  run.outputs.write_views(run.worst.record, run.worst.points, run.worst.description, "worst scan");
+  run.outputs.write_views(run.worst.record, run.worst.points, run.worst.description,
+                          run.worst.unseen, "worst scan");
   run.outputs.write_views(run.last, run.reading.pipeline.scan.points, run.describer.description,
-                          "last scan");
+                          unseen_cells(run), "last scan");
 }
 
 void report(Run& run) {

@@ -63,13 +63,6 @@ view::LeftOutReturns left_out(const io::ReturnCounts& counts) {
   return {counts.no_return, counts.not_finite, counts.out_of_range};
 }
 
-ScanView view_of(const io::Scan& scan) {
-  const bool one_origin = scan.origin_of.empty();
-  const BeamOrigins origins{scan.ray_origins.empty() ? nullptr : scan.ray_origins.data(),
-                            one_origin ? nullptr : scan.origin_of.data()};
-  return {scan.points.view(), origins};
-}
-
 void place_scan(ScanPipeline& pipeline, view::ScanRecord& record) {
   const Clock::time_point start = Clock::now();
   const io::Trajectory* trajectory = pipeline.trajectory.empty() ? nullptr : &pipeline.trajectory;
@@ -88,6 +81,13 @@ void name_things(const io::Scan& scan, ScanDescriber& describer) {
   const std::vector<std::uint64_t>& identities =
       describer.tracker.update(things, T_map_robot, scan.stamp);
   for (std::size_t k = 0; k < things.size(); ++k) things[k].identity = identities[k];
+}
+
+ScanView view_of(const io::Scan& scan) {
+  const bool one_origin = scan.origin_of.empty();
+  const BeamOrigins origins{scan.ray_origins.empty() ? nullptr : scan.ray_origins.data(),
+                            one_origin ? nullptr : scan.origin_of.data()};
+  return {scan.points.view(), origins};
 }
 
 void describe_scan(ScanPipeline& pipeline, ScanDescriber& describer, view::ScanRecord& record) {

@@ -48,6 +48,9 @@ mrpt_terrain::GroundPlane level_by_ground(ScanPipeline& pipeline);
 /// `pipeline.scan`; fills stamp, left out returns and the time that it took.
 void place_scan(ScanPipeline& pipeline, mrpt_terrain::view::ScanRecord& record);
 
+/// Points and origins of beams of a scan, borrowed.
+[[nodiscard]] mrpt_terrain::ScanView view_of(const mrpt_terrain::io::Scan& scan);
+
 /// Places and describes `pipeline.sensor_points` and fills counts and times of `record` (all but
 /// `io`).
 void describe_scan(ScanPipeline& pipeline, ScanDescriber& describer,

@@ -50,6 +50,47 @@ TEST(MapFiles, AllFormsAreWritten) {
   EXPECT_TRUE(scene.getByName("cells"));
 }
 
+// Field mode knows why cells were not seen, holes, and more parts of the costs.
+TEST(MapFiles, FieldModeWritesEveryPartOfTheCosts) {
+  MapParams params = small_map();
+  params.description.description.mode = DescriptionMode::kField;
+  params.creation.fusion = Fusion::kScan;
+  CTerrainMap map(params);
+  map.insertObservation(observation_of(scene_points(), lidar_pose()), CPose3D(10, 5, 0, 0, 0, 0));
+  const std::string prefix = fresh_folder() + "/map";
+  map.saveMetricMapRepresentationToFile(prefix);
+  for (const auto& part : enum_names(CostPart{})) {
+    const std::string layer = prefix + "_cost_" + part.name;
+    EXPECT_EQ(content_of(layer + ".pgm").substr(0, 2), "P5") << part.name;
+    EXPECT_NE(content_of(layer + ".yaml").find(std::string("map_cost_") + part.name + ".pgm"),
+              std::string::npos);
+  }
+  EXPECT_GT(content_of(prefix + "_cost_layers.png").size(), 1000U);
+  EXPECT_EQ(content_of(prefix + "_holes.csv").substr(0, 12), "hole,cluster");
+
+  // What the snapshot says of a place agrees with what it holds.
+  const TerrainSnapshotPtr now = map.snapshot();
+  const GridGeometry& geometry = now->description.grid.geometry;
+  ASSERT_EQ(now->costs.unseen.size(), static_cast<std::size_t>(geometry.array_size()));
+  int unseen = 0;
+  for (int l = 0; l < geometry.cells_l(); ++l) {
+    for (int w = 0; w < geometry.cells_w(); ++w) {
+      const Position2 place = geometry.centre_of({l, w});
+      const CellView cell = now->cell_at(10 + place.x, 5 + place.y);
+      const auto id = static_cast<std::size_t>(value_of(geometry.id_of({l, w})));
+      ASSERT_EQ(cell.unseen, now->costs.unseen[id]);
+      if (cell.status != PlaceStatus::kUnknown) continue;
+      const Cost cost = now->cost_at(10 + place.x, 5 + place.y, 0.3);
+      EXPECT_EQ(cost.status, CostStatus::kUnknown);
+      EXPECT_EQ(cost.cost, cost_of_unseen(cell.unseen, now->robot).cost);
+      EXPECT_GE(now->footprint_cost_at(10 + place.x, 5 + place.y, 0.3).cost, cost.cost);
+      ++unseen;
+    }
+  }
+  EXPECT_GT(unseen, 10);
+  EXPECT_EQ(now->footprint_cost_at(1000.0, 0.0, 0.0).status, CostStatus::kOutside);
+}
+
 // Oracle: octomap reads both files back.
 TEST(MapFiles, TheOctreeFilesAreOctomaps) {
   const std::string prefix = fresh_folder() + "/map";

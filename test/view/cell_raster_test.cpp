@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "description_builder.h"
 
@@ -86,6 +88,29 @@ TEST(CellRaster, FlatGroundHasARangeAroundIt) {
   EXPECT_NEAR(range.low, 0.2, 1e-9);
   EXPECT_NEAR(range.high, 0.3, 1e-9);
   EXPECT_TRUE(robust_range(ElevationGrid{}).empty);
+}
+
+// Two by two cells, one of them observed: a pixel per cell, and one for all.
+TEST(UnseenRaster, ReasonsOfCellsThatWereNotObserved) {
+  test::DescriptionBuilder builder(2.0, 2.0, 1.0);
+  builder.ground({1, 1}, 0.0F);  // x > 0, y > 0: the upper left pixel
+  const Description description = builder.build();
+  const GridGeometry& geometry = description.grid.geometry;
+  std::vector<UnseenReason> reasons(static_cast<std::size_t>(geometry.array_size()),
+                                    UnseenReason::kNoReturn);
+  const auto at = [&](CellIndex cell) -> UnseenReason& {
+    return reasons[static_cast<std::size_t>(value_of(geometry.id_of(cell)))];
+  };
+  at({1, 1}) = UnseenReason::kOccluded;  // something was seen, but not the ground
+  at({1, 0}) = UnseenReason::kOutOfView;
+  at({0, 1}) = UnseenReason::kOccluded;
+  const auto raster = unseen_raster(description.grid, reasons, 2, 2);
+  EXPECT_EQ(raster.values,
+            (std::vector<UnseenReason>{UnseenReason::kSeen, UnseenReason::kOutOfView,
+                                       UnseenReason::kOccluded, UnseenReason::kNoReturn}));
+  EXPECT_EQ(unseen_raster(description.grid, reasons, 1, 1).values.front(), UnseenReason::kSeen);
+  EXPECT_EQ(count_unseen(description.grid, reasons),
+            (std::array<std::size_t, kUnseenReasonCount>{1, 1, 1, 1}));
 }
 
 }  // namespace

@@ -79,5 +79,41 @@ TEST(CostView, WhatCannotBeWrittenIsSaid) {
       std::runtime_error);
 }
 
+TEST(CostView, CellsThatWereNotObservedHaveTheColourOfTheReason) {
+  World world;
+  const GridGeometry& geometry = world.description.grid.geometry;
+  world.costs.unseen.assign(static_cast<std::size_t>(geometry.array_size()),
+                            UnseenReason::kOccluded);
+  const std::string file = test::empty_test_folder() + "cost.png";
+  const TopViewOptions options;
+  write_cost_view(file, world.description, world.costs, world.robot, options);
+  mrpt::img::CImage image;
+  ASSERT_TRUE(image.loadFromFile(file));
+  const TopViewLayout layout = top_view_layout(geometry, options.max_width, options.max_height);
+  EXPECT_EQ(pixel_at(image, layout.classes, {4.5, 4.5}), kOccludedColour);
+  EXPECT_EQ(pixel_at(image, layout.classes, {2.5, 2.5}), kLethalColour);
+}
+
+TEST(CostView, LayersHaveAMapPerKnownPart) {
+  World world;
+  const std::string folder = test::empty_test_folder();
+  mrpt::img::CImage three, seven;
+  write_cost_layers(folder + "grid.png", world.description, world.costs, world.robot, {});
+  ASSERT_TRUE(three.loadFromFile(folder + "grid.png"));
+  const std::size_t n = world.costs.size();
+  world.costs.obstacle.assign(n, 1.0F);
+  world.costs.likely.assign(n, 1.0F);
+  world.costs.hole.assign(n, -1);
+  world.costs.doubt.assign(n, 0.0F);
+  world.costs.ground.assign(n, UnseenReason::kSeen);
+  write_cost_layers(folder + "field.png", world.description, world.costs, world.robot, {});
+  ASSERT_TRUE(seven.loadFromFile(folder + "field.png"));
+  EXPECT_EQ(three.getWidth(), seven.getWidth());
+  EXPECT_GT(seven.getHeight(), three.getHeight() + 300) << "a second row";
+  EXPECT_THROW(write_cost_layers("/no such folder/cost.png", world.description, world.costs,
+                                 world.robot, {}),
+               std::runtime_error);
+}
+
 }  // namespace
 }  // namespace mrpt_terrain::view

@@ -236,5 +236,31 @@ TEST(Csv, TheLocaleDoesNotMatter) {
   EXPECT_EQ(actual, expected);
 }
 
+TEST(HolesCsv, ALinePerHole) {
+  Description description;
+  description.clusters.cluster_of = {3};
+  HoleDescription hole;
+  hole.centre = {1.5, -2.0};
+  hole.length = 0.5;
+  hole.width = 0.25;
+  hole.depth = 0.125;
+  hole.confidence = 0.75;
+  hole.points = 12;
+  hole.rings = 2;
+  hole.slot = 0;
+  description.holes = {hole, hole};
+  description.holes[1].slot = -1;
+  ScanRecord scan;
+  scan.index = 4;
+  scan.stamp = 0.5;
+  std::ostringstream out;
+  write_holes_csv_header(out);
+  write_holes_csv(out, scan, description);
+  EXPECT_EQ(out.str(),
+            "scan,stamp,hole,cluster,x,y,length,width,depth,points,rings,confidence\n"
+            "4,0.5,0,3,1.5,-2,0.5,0.25,0.125,12,2,0.75\n"
+            "4,0.5,1,,1.5,-2,0.5,0.25,0.125,12,2,0.75\n");
+}
+
 }  // namespace
 }  // namespace mrpt_terrain::view

@@ -67,5 +67,27 @@ TEST(Tables, AnEigenvalueSlightlyBelowZeroIsNoRoughness) {
       << cluster_table(description);
 }
 
+TEST(HoleTable, HolesWithTheirClusters) {
+  Description description;
+  EXPECT_EQ(hole_table(description), "");
+  description.clusters.cluster_of = {kNoCluster, 7};
+  HoleDescription hole;
+  hole.centre = {4.25, -1.0};
+  hole.length = 0.61;
+  hole.width = 0.4;
+  hole.depth = 0.083;
+  hole.confidence = 0.456;
+  hole.points = 31;
+  hole.rings = 4;
+  hole.slot = 1;
+  description.holes = {hole, hole};
+  description.holes[1].slot = 0;
+  EXPECT_EQ(hole_table(description),
+            "hole  cluster  x [m]  y [m]     size [m]  depth [cm]  points  rings  confidence\n"
+            "  h0        7   4.25  -1.00  0.61 x 0.40         8.3      31      4        0.46\n"
+            "  h1        -   4.25  -1.00  0.61 x 0.40         8.3      31      4        0.46\n");
+  EXPECT_NE(hole_table(description, 1).find("... and 1 more\n"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace mrpt_terrain::view

@@ -2,12 +2,14 @@
 #include "mrpt_terrain/core/costs.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
 #include "lanes.h"
+#include "measure_ground.h"
 #include "wide_registers.h"
 
 namespace mrpt_terrain {
@@ -87,14 +89,18 @@ Slot best_window(const WindowsAround& windows, std::size_t slot, std::int32_t ow
 
 // Where cells follow each other in a row of the grid, so do those around them: they are looked up
 // once for all of `kCellLanes` cells, and compared side by side.
-void find_cells_in_row(const ElevationGrid& grid, std::vector<std::uint8_t>& in_row) {
+// Skipped cells are in no row.
+void find_cells_in_row(const ElevationGrid& grid, const CellSelection& selection,
+                       std::vector<std::uint8_t>& in_row) {
   const std::size_t size = grid.observed();
   in_row.resize(size);
   for (std::size_t slot = size; slot > 0; --slot) {
     const bool goes_on =
         slot < size && value_of(grid.cell[slot]) == value_of(grid.cell[slot - 1]) + 1;
     const std::size_t length = goes_on ? in_row[slot] + std::size_t{1} : 1;
-    in_row[slot - 1] = static_cast<std::uint8_t>(std::min(length, kCellLanes));
+    in_row[slot - 1] = selection.is_skipped(slot - 1)
+                           ? std::uint8_t{0}
+                           : static_cast<std::uint8_t>(std::min(length, kCellLanes));
   }
 }
 
@@ -177,9 +183,10 @@ CellSurface surface_of(const std::vector<LocalPlane>& planes, Slot window) {
   return {plane.x, plane.y, plane.z, plane.gradient_x, plane.gradient_y, plane.roughness, 1.0F};
 }
 
-void find_surfaces(const ElevationGrid& grid, int reach, CostWorkspace& workspace) {
+void find_surfaces(const ElevationGrid& grid, const CellSelection& selection, int reach,
+                   CostWorkspace& workspace) {
   find_qualities(workspace.planes, workspace.qualities);
-  find_cells_in_row(grid, workspace.in_row);
+  find_cells_in_row(grid, selection, workspace.in_row);
   workspace.surfaces.resize(grid.observed() + 1);
   workspace.surfaces[place_of(kUnobserved)] = CellSurface{};
   const WindowsAround windows(grid, reach);
@@ -188,7 +195,9 @@ void find_surfaces(const ElevationGrid& grid, int reach, CostWorkspace& workspac
     const bool together = workspace.in_row[slot] == kCellLanes &&
                           best_windows_of_row(grid, reach, slot, workspace, best);
     count = together ? kCellLanes : 1;
-    if (!together) {
+    if (workspace.in_row[slot] == 0) {
+      best[0] = kUnobserved;
+    } else if (!together) {
       best[0] = best_window(windows, slot, workspace.planes[slot].cells, workspace.qualities);
     }
     for (std::size_t k = 0; k < count; ++k) {
@@ -200,16 +209,26 @@ void find_surfaces(const ElevationGrid& grid, int reach, CostWorkspace& workspac
 // What the stages below share of one call.
 struct Ground {
   const ElevationGrid& grid;
+  const std::vector<MomentSums>& sums;
+  const std::vector<float>* extent;  // per slot: highest less lowest point; null: the grid's
   const std::vector<CellSurface>& surfaces;
   double max_gradient;  // tan(max_climb)
+
+  [[nodiscard]] bool has_points(std::size_t slot) const { return sums[slot].n > 0.0; }
 };
 
 // Mean of the points of a cell, metres.
 struct Place {
   double x, y, z;
 };
-Place mean_of(const ElevationGrid& grid, std::size_t slot) {
-  const MomentSums& sums = grid.sums[slot];
+// Without points, the place of the cell's surface in its middle.
+Place mean_of(const Ground& ground, std::size_t slot) {
+  const MomentSums& sums = ground.sums[slot];
+  if (!(sums.n > 0.0)) {
+    const GridGeometry& geometry = ground.grid.geometry;
+    const Position2 centre = geometry.centre_of(geometry.index_of(ground.grid.cell[slot]));
+    return {centre.x, centre.y, ground.surfaces[slot + 1].height_at(centre.x, centre.y)};
+  }
   const double share = 1.0 / sums.n;
   return {sums.x * share, sums.y * share, sums.z * share};
 }
@@ -234,13 +253,16 @@ void set_own(const Ground& ground, std::size_t slot, const Place& here, std::siz
              CellsAround& cells) {
   const CellSurface& own = ground.surfaces[slot + 1];
   cells.mean_z.value[lane] = here.z;
-  cells.points.value[lane] = ground.grid.sums[slot].n;
-  cells.h_diff.value[lane] = double{ground.grid.h_diff(slot)};
+  // The height of a cell without points says nothing: its tolerance is without bounds.
+  constexpr double kNoPoints = 1e-12;
+  cells.points.value[lane] = std::max(ground.sums[slot].n, kNoPoints);
+  cells.h_diff.value[lane] =
+      double{ground.extent == nullptr ? ground.grid.h_diff(slot) : (*ground.extent)[slot]};
   cells.steepness.value[lane] = double{std::abs(own.gradient_x) + std::abs(own.gradient_y)};
 }
 
 void set_lane(const Ground& ground, std::size_t slot, std::size_t lane, CellsAround& cells) {
-  const Place here = mean_of(ground.grid, slot);
+  const Place here = mean_of(ground, slot);
   const std::int32_t stride = ground.grid.geometry.stride();
   for (std::size_t k = 0; k < kNearby; ++k) {
     const auto n = static_cast<std::int32_t>(k);
@@ -302,7 +324,7 @@ void set_all_nearby(const SurfaceRow (&rows)[3], CellsAround& cells) {
 // `set_lane` of cells that follow each other, the first of which has `slot`.
 void set_lanes_of_row(const Ground& ground, std::size_t slot, CellsAround& cells) {
   for (std::size_t lane = 0; lane < kCellLanes; ++lane) {
-    const Place here = mean_of(ground.grid, slot + lane);
+    const Place here = mean_of(ground, slot + lane);
     cells.x.value[lane] = here.x;
     cells.y.value[lane] = here.y;
     set_own(ground, slot + lane, here, lane, cells);
@@ -315,17 +337,21 @@ void set_lanes_of_row(const Ground& ground, std::size_t slot, CellsAround& cells
   set_all_nearby(rows, cells);
 }
 
-// Sets up to `kCellLanes` cells from a slot on; returns how many.
+// Sets up to `kCellLanes` cells from slot `next` on, which moves on behind them; returns how many.
+// \param slots where they are
 std::size_t set_lanes(const Ground& ground, const std::vector<std::uint8_t>& in_row,
-                      std::size_t slot, CellsAround& cells) {
-  if (in_row[slot] == kCellLanes) {
-    set_lanes_of_row(ground, slot, cells);
+                      std::size_t& next, CellsAround& cells, std::size_t* slots) {
+  if (in_row[next] == kCellLanes) {
+    set_lanes_of_row(ground, next, cells);
+    for (std::size_t lane = 0; lane < kCellLanes; ++lane) slots[lane] = next++;
     return kCellLanes;
   }
   std::size_t count = 0;
-  for (; count < kCellLanes && slot + count < in_row.size(); ++count) {
-    if (in_row[slot + count] == kCellLanes) break;
-    set_lane(ground, slot + count, count, cells);
+  for (; count < kCellLanes && next < in_row.size(); ++next) {
+    if (in_row[next] == kCellLanes) break;
+    if (in_row[next] == 0) continue;  // skipped
+    set_lane(ground, next, count, cells);
+    slots[count++] = next;
   }
   return count;
 }
@@ -446,8 +472,8 @@ void measure_lanes(double max_gradient, double cell_size, CellsAround& cells) {
 
 // By how much more two cells without surfaces differ in height than the robot can climb.
 double unclimbable_rise(const Ground& ground, const Place& here, Slot other) {
-  if (other == kUnobserved) return 0.0;
-  const Place there = mean_of(ground.grid, static_cast<std::size_t>(other));
+  if (other == kUnobserved || !ground.has_points(static_cast<std::size_t>(other))) return 0.0;
+  const Place there = mean_of(ground, static_cast<std::size_t>(other));
   const double dx = there.x - here.x;
   const double dy = there.y - here.y;
   return std::abs(there.z - here.z) - ground.max_gradient * std::sqrt(dx * dx + dy * dy);
@@ -456,7 +482,8 @@ double unclimbable_rise(const Ground& ground, const Place& here, Slot other) {
 // Step of a cell in the directions in which no surface tells it.
 double lone_step(const Ground& ground, const CellsAround& cells, std::size_t lane,
                  std::size_t slot) {
-  const Place here = mean_of(ground.grid, slot);
+  if (!ground.has_points(slot)) return 0.0;
+  const Place here = mean_of(ground, slot);
   double step = 0.0;
   for (std::size_t k = 0; k < kSelf; ++k) {
     const std::size_t behind = kNearby - 1 - k;
@@ -486,8 +513,42 @@ void write_lane(const Ground& ground, const CellsAround& cells, std::size_t lane
   costs.status[slot] = FeatureStatus::kOk;
 }
 
+void write_skipped(const std::vector<std::uint8_t>& skipped, CellCosts& costs) {
+  for (std::size_t slot = 0; slot < skipped.size(); ++slot) {
+    if (skipped[slot] == 0) continue;
+    costs.gradient_x[slot] = costs.gradient_y[slot] = 0.0F;
+    costs.step[slot] = costs.roughness[slot] = 0.0F;
+    costs.status[slot] = FeatureStatus::kTooFewPoints;
+  }
+}
+
+// Parts that descriptions of field mode have; those of holes are for the way across one.
+template <class Across>
+void add_field_parts(const CellCosts& costs, std::size_t slot, const RobotParams& robot,
+                     Across&& across, CostParts& parts) {
+  // What is not sure enough costs, but does not stop the robot.
+  const auto believed = [&robot](double part, double confidence) {
+    if (confidence >= robot.least_confidence) return part;
+    return std::min(1.0, part) * confidence / robot.least_confidence;
+  };
+  constexpr double kMostDoubt = 0.9;
+  const auto limit = static_cast<float>(robot.max_step);
+  const float low = std::min(limit, std::max(static_cast<float>(robot.ground_clearance), 1e-3F));
+  parts.obstacle =
+      believed(double{costs.obstacle[slot] / low}, static_cast<double>(costs.likely[slot]));
+  parts.doubt = std::min(kMostDoubt, double{costs.doubt[slot] / limit});
+  parts.unknown = cost_of_unseen(costs.ground[slot], robot).parts.unknown;
+  if (costs.hole[slot] < 0) return;
+  const HoleExtent& hole = costs.holes[static_cast<std::size_t>(costs.hole[slot])];
+  const double drop = wheel_drop(static_cast<double>(hole.depth), across(hole), robot.wheel_radius);
+  parts.pothole = believed(drop / robot.max_step, static_cast<double>(hole.confidence));
+}
+
 // Cost from a slope part that is already known.
-Cost cost_with(const CellCosts& costs, std::size_t slot, const RobotParams& robot, double slope) {
+// \param across way across a hole, metres
+template <class Across>
+Cost cost_with(const CellCosts& costs, std::size_t slot, const RobotParams& robot, double slope,
+               Across&& across) {
   Cost result;
   // Limits as floats: a step that equals the limit in the file is equal here too.
   result.parts.step = double{costs.step[slot] / static_cast<float>(robot.max_step)};
@@ -497,7 +558,8 @@ Cost cost_with(const CellCosts& costs, std::size_t slot, const RobotParams& robo
     result.parts.roughness =
         double{costs.roughness[slot] / static_cast<float>(robot.max_roughness)};
   }
-  const double largest = std::max({result.parts.slope, result.parts.step, result.parts.roughness});
+  if (costs.has(CostPart::kObstacle)) add_field_parts(costs, slot, robot, across, result.parts);
+  const double largest = result.parts.largest();
   result.cost = std::min(1.0, largest);
   if (largest >= 1.0) {
     result.status = CostStatus::kLethal;
@@ -507,14 +569,70 @@ Cost cost_with(const CellCosts& costs, std::size_t slot, const RobotParams& robo
   return result;
 }
 
-// Calls `cost` with the slot of a position.
+Cost outside() {
+  Cost cost;
+  cost.status = CostStatus::kOutside;
+  return cost;
+}
+
+// Calls `cost` with the slot of a cell that has one.
 template <class CostOfSlot>
-Cost at_position(const ElevationGrid& grid, Position2 position, CostOfSlot&& cost) {
+Cost cost_in(const ElevationGrid& grid, const CellCosts& costs, CellIndex cell,
+             const RobotParams& robot, CostOfSlot&& cost) {
+  const Slot slot = grid.slot_at(cell);
+  if (slot != kUnobserved || costs.unseen.empty()) return cost(slot);
+  return cost_of_unseen(costs.unseen[static_cast<std::size_t>(value_of(grid.geometry.id_of(cell)))],
+                        robot);
+}
+
+// The same at a position.
+template <class CostOfSlot>
+Cost at_position(const ElevationGrid& grid, const CellCosts& costs, Position2 position,
+                 const RobotParams& robot, CostOfSlot&& cost) {
   CellIndex cell;
-  if (grid.geometry.cell_at(position.x, position.y, cell)) return cost(grid.slot_at(cell));
-  Cost outside;
-  outside.status = CostStatus::kOutside;
-  return outside;
+  if (!grid.geometry.cell_at(position.x, position.y, cell)) return outside();
+  return cost_in(grid, costs, cell, robot, cost);
+}
+
+/// The robot from above.
+struct FootprintBox {
+  Position2 centre;
+  double c, s;                     // of the heading
+  double half_length, half_width;  // metres
+
+  // Half extents along the axes of the grid.
+  [[nodiscard]] double reach_x() const {
+    return half_length * std::abs(c) + half_width * std::abs(s);
+  }
+  [[nodiscard]] double reach_y() const {
+    return half_length * std::abs(s) + half_width * std::abs(c);
+  }
+  // Whether a square that lies within the reach along x and y is touched: it must not lie beyond
+  // one of the four sides either (separating axes).
+  [[nodiscard]] bool touches(Position2 square, double half_side) const {
+    const double dx = square.x - centre.x, dy = square.y - centre.y;
+    const double reach = half_side * (std::abs(c) + std::abs(s));
+    return std::abs(c * dx + s * dy) < half_length + reach &&
+           std::abs(c * dy - s * dx) < half_width + reach;
+  }
+};
+
+int rank_of(CostStatus status) {
+  constexpr std::array<int, 4> kRank{0, 3, 1, 2};  // ok, lethal, unknown, outside
+  return kRank[static_cast<std::size_t>(status)];
+}
+
+void raise_to(const Cost& other, Cost& worst) {
+  if (rank_of(other.status) > rank_of(worst.status)) worst.status = other.status;
+  worst.cost = std::max(worst.cost, other.cost);
+  CostParts& parts = worst.parts;
+  parts.slope = std::max(parts.slope, other.parts.slope);
+  parts.step = std::max(parts.step, other.parts.step);
+  parts.roughness = std::max(parts.roughness, other.parts.roughness);
+  parts.obstacle = std::max(parts.obstacle, other.parts.obstacle);
+  parts.pothole = std::max(parts.pothole, other.parts.pothole);
+  parts.unknown = std::max(parts.unknown, other.parts.unknown);
+  parts.doubt = std::max(parts.doubt, other.parts.doubt);
 }
 
 }  // namespace
@@ -524,26 +642,103 @@ int window_reach(const RobotParams& robot, double cell_size) {
   return static_cast<int>(std::clamp(cells, 1.0, double{kMaxReach}));
 }
 
-void compute_cell_costs(const ElevationGrid& grid, const RobotParams& robot,
-                        CostWorkspace& workspace, CellCosts& costs) {
+void measure_ground(const GroundPoints& points, const RobotParams& robot, CostWorkspace& workspace,
+                    CellCosts& costs) {
+  const ElevationGrid& grid = points.grid;
   const std::size_t size = grid.observed();
   const int reach = window_reach(robot, grid.geometry.cell_size());
-  fit_local_planes(grid, reach, workspace.planes);
-  find_surfaces(grid, reach, workspace);
+  fit_local_planes(grid, points.cells, reach, workspace.planes);
+  find_surfaces(grid, points.cells, reach, workspace);
   costs.gradient_x.resize(size);
   costs.gradient_y.resize(size);
   costs.step.resize(size);
   costs.roughness.resize(size);
   costs.status.resize(size);
-  const Ground ground{grid, workspace.surfaces, std::tan(robot.max_climb)};
+  const Ground ground{grid, points.cells.sums, points.extent, workspace.surfaces,
+                      std::tan(robot.max_climb)};
+  if (points.cells.skipped != nullptr) write_skipped(*points.cells.skipped, costs);
   CellsAround cells;
-  for (std::size_t first = 0, count = 0; first < size; first += count) {
-    count = set_lanes(ground, workspace.in_row, first, cells);
+  std::size_t slots[kCellLanes];
+  for (std::size_t next = 0; next < size;) {
+    const std::size_t count = set_lanes(ground, workspace.in_row, next, cells, slots);
     measure_lanes(ground.max_gradient, grid.geometry.cell_size(), cells);
     for (std::size_t lane = 0; lane < count; ++lane) {
-      write_lane(ground, cells, lane, first + lane, workspace.planes, costs);
+      write_lane(ground, cells, lane, slots[lane], workspace.planes, costs);
     }
   }
+}
+
+void clear_field_parts(CellCosts& costs) {
+  costs.obstacle.clear();
+  costs.likely.clear();
+  costs.hole.clear();
+  costs.doubt.clear();
+  costs.ground.clear();
+  costs.holes.clear();
+  costs.unseen.clear();
+}
+
+void compute_cell_costs(const ElevationGrid& grid, const RobotParams& robot,
+                        CostWorkspace& workspace, CellCosts& costs) {
+  clear_field_parts(costs);
+  measure_ground({grid, {grid.sums}}, robot, workspace, costs);
+}
+
+double CostParts::of(CostPart part) const {
+  switch (part) {
+    case CostPart::kSlope:
+      return slope;
+    case CostPart::kStep:
+      return step;
+    case CostPart::kRoughness:
+      return roughness;
+    case CostPart::kObstacle:
+      return obstacle;
+    case CostPart::kPothole:
+      return pothole;
+    case CostPart::kUnknown:
+      return unknown;
+    case CostPart::kDoubt:
+      return doubt;
+  }
+  return 0.0;
+}
+
+double CostParts::largest() const {
+  return std::max({slope, step, roughness, obstacle, pothole, unknown, doubt});
+}
+
+double HoleExtent::extent_along(double heading) const {
+  const double turn = heading - static_cast<double>(yaw);
+  const auto long_side = static_cast<double>(length), short_side = static_cast<double>(width);
+  if (!(short_side > 0.0)) return 0.0;
+  return 1.0 / std::hypot(std::cos(turn) / long_side, std::sin(turn) / short_side);
+}
+
+double wheel_drop(double depth, double extent, double wheel_radius) {
+  const double half = 0.5 * extent;
+  if (half >= wheel_radius) return depth;
+  const double sag = wheel_radius - std::sqrt(wheel_radius * wheel_radius - half * half);
+  return std::min(depth, sag);
+}
+
+Cost cost_of_unseen(UnseenReason reason, const RobotParams& robot) {
+  Cost cost;
+  switch (reason) {
+    case UnseenReason::kSeen:
+      break;
+    case UnseenReason::kOutOfView:
+      cost.parts.unknown = robot.cost_out_of_view;
+      break;
+    case UnseenReason::kOccluded:
+      cost.parts.unknown = robot.cost_occluded;
+      break;
+    case UnseenReason::kNoReturn:
+      cost.parts.unknown = robot.cost_no_return;
+      break;
+  }
+  cost.cost = cost.parts.unknown;
+  return cost;
 }
 
 Cost cost_of(const CellCosts& costs, Slot slot, const RobotParams& robot, double heading) {
@@ -556,7 +751,8 @@ Cost cost_of(const CellCosts& costs, Slot slot, const RobotParams& robot, double
   const double s = std::sin(heading);
   const double along = std::atan(std::abs(c * gx + s * gy)) / robot.max_climb;
   const double across = std::atan(std::abs(c * gy - s * gx)) / robot.max_tilt;
-  return cost_with(costs, k, robot, std::max(along, across));
+  return cost_with(costs, k, robot, std::max(along, across),
+                   [heading](const HoleExtent& hole) { return hole.extent_along(heading); });
 }
 
 Cost cost_of(const CellCosts& costs, Slot slot, const RobotParams& robot) {
@@ -566,18 +762,48 @@ Cost cost_of(const CellCosts& costs, Slot slot, const RobotParams& robot) {
   const double gx = costs.gradient_x[k];
   const double gy = costs.gradient_y[k];
   const double angle = std::atan(std::sqrt(gx * gx + gy * gy));
-  return cost_with(costs, k, robot, angle / std::min(robot.max_climb, robot.max_tilt));
+  return cost_with(costs, k, robot, angle / std::min(robot.max_climb, robot.max_tilt),
+                   [](const HoleExtent& hole) { return static_cast<double>(hole.length); });
 }
 
 Cost cost_at(const ElevationGrid& grid, const CellCosts& costs, Position2 position,
              const RobotParams& robot, double heading) {
-  return at_position(grid, position,
+  return at_position(grid, costs, position, robot,
                      [&](Slot slot) { return cost_of(costs, slot, robot, heading); });
 }
 
 Cost cost_at(const ElevationGrid& grid, const CellCosts& costs, Position2 position,
              const RobotParams& robot) {
-  return at_position(grid, position, [&](Slot slot) { return cost_of(costs, slot, robot); });
+  return at_position(grid, costs, position, robot,
+                     [&](Slot slot) { return cost_of(costs, slot, robot); });
+}
+
+Cost footprint_cost_at(const ElevationGrid& grid, const CellCosts& costs, Position2 position,
+                       const RobotParams& robot, double heading) {
+  CellIndex centre;
+  if (!grid.geometry.cell_at(position.x, position.y, centre)) return outside();
+  const FootprintBox box{position, std::cos(heading), std::sin(heading),
+                         0.5 * robot.footprint_length, 0.5 * robot.footprint_width};
+  const double cell = grid.geometry.cell_size();
+  const auto first = [cell](double low, double edge) {
+    return static_cast<int>(std::floor((low + edge) / cell));
+  };
+  const double half_l = grid.geometry.half_length(), half_w = grid.geometry.half_width();
+  const double rx = box.reach_x(), ry = box.reach_y();
+  Cost worst;
+  worst.status = CostStatus::kOk;
+  for (int l = first(position.x - rx, half_l); l <= first(position.x + rx, half_l); ++l) {
+    for (int w = first(position.y - ry, half_w); w <= first(position.y + ry, half_w); ++w) {
+      const CellIndex at{l, w};
+      if (!box.touches(grid.geometry.centre_of(at), 0.5 * cell)) continue;
+      raise_to(grid.geometry.contains(at)
+                   ? cost_in(grid, costs, at, robot,
+                             [&](Slot slot) { return cost_of(costs, slot, robot, heading); })
+                   : outside(),
+               worst);
+    }
+  }
+  return worst;
 }
 
 }  // namespace mrpt_terrain

@@ -25,7 +25,8 @@ struct CellSums {
 // in a row share all but one of them, so the columns are kept.
 class Windows {
  public:
-  Windows(const ElevationGrid& grid, int reach) : grid_(grid), reach_(reach) {}
+  Windows(const ElevationGrid& grid, const std::vector<MomentSums>& sums, int reach)
+      : grid_(grid), sums_(sums), reach_(reach) {}
 
   MRPT_TERRAIN_LANES CellSums about(CellIndex centre) {
     if (centre.l != row_) start_row(centre.l);
@@ -61,13 +62,15 @@ class Windows {
           grid_.slot_of[static_cast<std::size_t>(value_of(grid_.geometry.id_of({l, w})))];
       // Without a branch: which cells are observed is hard to predict, and adding zeros is cheap.
       const bool observed = slot != kUnobserved;
-      column.sums.add(observed ? grid_.sums[static_cast<std::size_t>(slot)] : kNothing);
-      column.cells += observed ? 1 : 0;
+      const MomentSums& cell = observed ? sums_[static_cast<std::size_t>(slot)] : kNothing;
+      column.sums.add(cell);
+      column.cells += cell.n > 0.0 ? 1 : 0;
     }
     return column;
   }
 
   const ElevationGrid& grid_;
+  const std::vector<MomentSums>& sums_;
   int reach_;
   int row_ = -1;
   std::array<int, kKept> column_of_{};
@@ -269,19 +272,24 @@ LocalPlane plane_of(const WindowLanes& window, std::size_t lane, std::int32_t le
 }
 
 MRPT_TERRAIN_WIDE_REGISTERS
-void fit_all(const ElevationGrid& grid, int reach, double least_spread,
+void fit_all(const ElevationGrid& grid, const CellSelection& cells, int reach, double least_spread,
              std::vector<LocalPlane>& planes) {
-  Windows windows(grid, reach);
+  Windows windows(grid, cells.sums, reach);
   WindowLanes lanes;
-  for (std::size_t first = 0; first < grid.observed(); first += kCellLanes) {
-    const std::size_t count = std::min(kCellLanes, grid.observed() - first);
-    for (std::size_t lane = 0; lane < count; ++lane) {
-      const CellIndex centre = grid.geometry.index_of(grid.cell[first + lane]);
-      set_lane(windows.about(centre), lane, lanes);
+  std::size_t slots[kCellLanes];
+  for (std::size_t next = 0; next < grid.observed();) {
+    std::size_t count = 0;
+    for (; count < kCellLanes && next < grid.observed(); ++next) {
+      if (cells.is_skipped(next)) {
+        planes[next] = LocalPlane{};
+        continue;
+      }
+      set_lane(windows.about(grid.geometry.index_of(grid.cell[next])), count, lanes);
+      slots[count++] = next;
     }
     fit_planes(least_spread, lanes);
     for (std::size_t lane = 0; lane < count; ++lane) {
-      planes[first + lane] = plane_of(lanes, lane, 2 * reach + 1);
+      planes[slots[lane]] = plane_of(lanes, lane, 2 * reach + 1);
     }
   }
 }
@@ -289,12 +297,17 @@ void fit_all(const ElevationGrid& grid, int reach, double least_spread,
 }  // namespace
 
 void fit_local_planes(const ElevationGrid& grid, int reach, std::vector<LocalPlane>& planes) {
+  fit_local_planes(grid, CellSelection{grid.sums, nullptr}, reach, planes);
+}
+
+void fit_local_planes(const ElevationGrid& grid, const CellSelection& cells, int reach,
+                      std::vector<LocalPlane>& planes) {
   assert(reach >= 1 && reach <= kMaxReach);
   const double cell_size = grid.geometry.cell_size();
   // A quarter of the variance of the centres of 2 r + 1 rows, r (r + 1) / 3 squared cells.
   const double least_spread = 0.25 * reach * (reach + 1) / 3.0 * cell_size * cell_size;
   planes.resize(grid.observed());
-  fit_all(grid, reach, least_spread, planes);
+  fit_all(grid, cells, reach, least_spread, planes);
 }
 
 }  // namespace mrpt_terrain

@@ -18,19 +18,61 @@ constexpr float kHanging = 0.5F;
 constexpr float kBehind = 0.3F;
 constexpr float kNothing = std::numeric_limits<float>::max();
 
-/// Direction and distance of a place from the sensor.
-struct Seen {
-  int sector;
-  float range;
-};
-Seen look_at(const std::array<float, 3>& origin, float x, float y) {
+// Angle of (dx, dy) from the x axis, radians within [-pi, pi], to less than a hundredth of a
+// sector. The polynomial is a least-squares fit of atan over [0, 1], weighted until its errors were
+// even.
+float angle_of(float dx, float dy) {
+  const float ax = std::abs(dx), ay = std::abs(dy);
+  const float longer = std::max(ax, ay);
+  if (!(longer > 0.0F)) return 0.0F;
+  const float t = std::min(ax, ay) / longer;
+  const float q = t * t;
+  const float part =
+      (((0.0208660F * q - 0.0851982F) * q + 0.1801866F) * q - 0.3303112F) * q + 0.9998667F;
+  constexpr auto kPi = static_cast<float>(M_PI);
+  float angle = part * t;
+  if (ay > ax) angle = 0.5F * kPi - angle;
+  if (dx < 0.0F) angle = kPi - angle;
+  return dy < 0.0F ? -angle : angle;
+}
+
+SectorPlace look_at(const std::array<float, 3>& origin, float x, float y) {
+  constexpr auto kSectorsPerRadian = static_cast<float>(kSectors / (2.0 * M_PI));
   const float dx = x - origin[0], dy = y - origin[1];
-  const double turns = std::atan2(dy, dx) / (2.0 * M_PI) + 0.5;
-  return {std::min(static_cast<int>(turns * kSectors), kSectors - 1), std::hypot(dx, dy)};
+  const float turned = angle_of(dx, dy) + static_cast<float>(M_PI);
+  const int sector = std::clamp(static_cast<int>(turned * kSectorsPerRadian), 0, kSectors - 1);
+  return {sector, std::sqrt(dx * dx + dy * dy)};
 }
 
 float tangent(const std::array<float, 3>& origin, float z, float range) {
   return (z - origin[2]) / std::max(range, 1e-3F);
+}
+
+void look_at_points(const PointsView& points, const std::array<float, 3>& origin,
+                    std::vector<SectorPlace>& places) {
+  places.resize(points.size);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const bool finite =
+        std::isfinite(points.x[i]) && std::isfinite(points.y[i]) && std::isfinite(points.z[i]);
+    places[i] = finite ? look_at(origin, points.x[i], points.y[i]) : SectorPlace{};
+  }
+}
+
+// Cells lie where they lay before as long as grid and sensor stay the same.
+void look_at_cells(const GridGeometry& geometry, const std::array<float, 3>& origin,
+                   UnseenWorkspace& workspace) {
+  const bool same = workspace.geometry == geometry && workspace.origin == origin;
+  if (same && !workspace.cells.empty()) return;
+  workspace.geometry = geometry;
+  workspace.origin = origin;
+  workspace.cells.clear();
+  for (int l = 0; l < geometry.cells_l(); ++l) {
+    for (int w = 0; w < geometry.cells_w(); ++w) {
+      const Position2 centre = geometry.centre_of({l, w});
+      workspace.cells.push_back(
+          look_at(origin, static_cast<float>(centre.x), static_cast<float>(centre.y)));
+    }
+  }
 }
 
 // How far down the beams reach, per sector, from those that came back nearby.
@@ -40,9 +82,8 @@ void measure_view(const PointsView& points, const std::array<float, 3>& origin,
   // The second half is what is seen in the sector itself.
   lowest.assign(2 * kSectors, kNothing);
   for (std::size_t i = 0; i < points.size; ++i) {
-    if (!std::isfinite(points.x[i]) || !std::isfinite(points.y[i]) || !std::isfinite(points.z[i]))
-      continue;
-    const Seen seen = look_at(origin, points.x[i], points.y[i]);
+    const SectorPlace seen = workspace.places[i];
+    if (seen.sector < 0) continue;
     float& low = lowest[static_cast<std::size_t>(kSectors + seen.sector)];
     low = std::min(low, tangent(origin, points.z[i], seen.range));
   }
@@ -58,14 +99,14 @@ void measure_view(const PointsView& points, const std::array<float, 3>& origin,
 // Calls f(sector, range, top) for every point of a thing that stands on the ground.
 template <class F>
 void for_standing(const ScanView& scan, const DescriptionWorkspace& reference,
-                  const Description& description, F&& f) {
+                  const Description& description, const std::vector<SectorPlace>& places, F&& f) {
   const std::array<float, 3>& origin = scan.origins.of(0);
   const FieldPoints& field = reference.field.points;
   for (std::size_t i = 0; i < scan.points.size; ++i) {
     const std::int32_t slot = reference.point_slots[i];
     if (slot < 0 || field.support[i] != Support::kAbove) continue;
     if (description.field.low[static_cast<std::size_t>(slot)] >= kHanging) continue;
-    const Seen seen = look_at(origin, scan.points.x[i], scan.points.y[i]);
+    const SectorPlace seen = places[i];
     f(seen.sector, seen.range, tangent(origin, scan.points.z[i], seen.range));
   }
 }
@@ -74,7 +115,7 @@ void for_standing(const ScanView& scan, const DescriptionWorkspace& reference,
 void collect_things(const ScanView& scan, const DescriptionWorkspace& reference,
                     const Description& description, UnseenWorkspace& workspace) {
   workspace.count.assign(kSectors, 0);
-  for_standing(scan, reference, description, [&](int sector, float, float) {
+  for_standing(scan, reference, description, workspace.places, [&](int sector, float, float) {
     ++workspace.count[static_cast<std::size_t>(sector)];
   });
   workspace.first.assign(kSectors + 1, 0);
@@ -82,10 +123,11 @@ void collect_things(const ScanView& scan, const DescriptionWorkspace& reference,
     workspace.first[sector + 1] = workspace.first[sector] + workspace.count[sector];
   workspace.things.resize(static_cast<std::size_t>(workspace.first[kSectors]));
   std::copy(workspace.first.begin(), workspace.first.end() - 1, workspace.count.begin());
-  for_standing(scan, reference, description, [&](int sector, float range, float top) {
-    const auto at = workspace.count[static_cast<std::size_t>(sector)]++;
-    workspace.things[static_cast<std::size_t>(at)] = {range, top};
-  });
+  for_standing(scan, reference, description, workspace.places,
+               [&](int sector, float range, float top) {
+                 const auto at = workspace.count[static_cast<std::size_t>(sector)]++;
+                 workspace.things[static_cast<std::size_t>(at)] = {range, top};
+               });
   for (std::size_t sector = 0; sector < kSectors; ++sector) {
     const auto begin = workspace.things.begin() + workspace.first[sector];
     const auto end = workspace.things.begin() + workspace.first[sector + 1];
@@ -97,7 +139,7 @@ void collect_things(const ScanView& scan, const DescriptionWorkspace& reference,
   }
 }
 
-bool is_occluded(const UnseenWorkspace& workspace, Seen seen, float ground) {
+bool is_occluded(const UnseenWorkspace& workspace, SectorPlace seen, float ground) {
   const auto sector = static_cast<std::size_t>(seen.sector);
   const auto begin = workspace.things.begin() + workspace.first[sector];
   const auto end = workspace.things.begin() + workspace.first[sector + 1];
@@ -122,11 +164,14 @@ void explain_unseen_cells(const ScanView& scan, const DescriptionWorkspace& refe
   const bool known = scan.origins.known() && scan.points.size > 0;
   reasons.assign(static_cast<std::size_t>(grid.geometry.array_size()), UnseenReason::kNoReturn);
   if (known) {
+    look_at_points(scan.points, scan.origins.of(0), workspace.places);
+    look_at_cells(grid.geometry, scan.origins.of(0), workspace);
     measure_view(scan.points, scan.origins.of(0), workspace);
     collect_things(scan, reference, description, workspace);
   }
+  std::size_t number = 0;
   for (int l = 0; l < grid.geometry.cells_l(); ++l) {
-    for (int w = 0; w < grid.geometry.cells_w(); ++w) {
+    for (int w = 0; w < grid.geometry.cells_w(); ++w, ++number) {
       const CellIndex cell{l, w};
       UnseenReason& reason = reasons[static_cast<std::size_t>(value_of(grid.geometry.id_of(cell)))];
       const Slot slot = grid.slot_at(cell);
@@ -138,7 +183,7 @@ void explain_unseen_cells(const ScanView& scan, const DescriptionWorkspace& refe
       if (slot != kUnobserved || !known) continue;
       const Position2 centre = grid.geometry.centre_of(cell);
       const auto x = static_cast<float>(centre.x), y = static_cast<float>(centre.y);
-      const Seen seen = look_at(scan.origins.of(0), x, y);
+      const SectorPlace seen = workspace.cells[number];
       const float ground =
           tangent(scan.origins.of(0), reference.field.surface.height_at(x, y), seen.range);
       const float lowest = workspace.lowest[static_cast<std::size_t>(seen.sector)];

@@ -14,7 +14,36 @@ struct Scratch {
   ScanWorkspace workspace;
   TestScan scan;
   Description description;
+  CellCosts costs;
 };
+
+// Cells that persons walk through: no truth of what stays tells their costs.
+void leave_out_persons(const TestScan& scan, const GridGeometry& geometry,
+                       std::vector<TrueCell>& kinds) {
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    if (scan.truth.things[static_cast<std::size_t>(scan.truth.thing[i])].type != "person") continue;
+    CellIndex cell;
+    const auto x = static_cast<double>(scan.points.x[i]), y = static_cast<double>(scan.points.y[i]);
+    if (!geometry.cell_at(x, y, cell)) continue;
+    kinds[static_cast<std::size_t>(cell.l * geometry.cells_w() + cell.w)] = TrueCell::kNotCounted;
+  }
+}
+
+void score_costs(const WorldTask& task, const DrivenWorld& world, Scratch& scratch,
+                 WorldScore& score) {
+  const TestScan& scan = scratch.scan;
+  const CostRules& rules = task.rules.costs;
+  const ElevationGrid& grid = scratch.description.grid;
+  const double clear = rules.robot.height + rules.robot.overhead_reserve;
+  task.costs(scan.view(), scratch.description, scratch.costs);
+  const GridGeometry middle = middle_of(grid.geometry, rules.radius);
+  const sim::CellTruth truth =
+      sim::truth_of_cells(*world.caster, scan.truth.T_map_given, middle, clear);
+  std::vector<TrueCell> kinds =
+      true_cells(truth, scan.truth.things, scan.truth.T_map_given, rules.robot);
+  leave_out_persons(scan, middle, kinds);
+  add_costs(grid, scratch.costs, middle, kinds, rules.robot, score.costs);
+}
 
 void score_scan(const WorldTask& task, const DrivenWorld& world, std::size_t sweep,
                 Scratch& scratch, WorldScore& score) {
@@ -36,6 +65,7 @@ void score_scan(const WorldTask& task, const DrivenWorld& world, std::size_t swe
       score.things.push_back(std::move(record));
     }
   }
+  if (task.costs) score_costs(task, world, scratch, score);
   if (task.listener) task.listener({world, sweep, scan, description, matching});
 }
 
@@ -119,6 +149,7 @@ void WorldScore::add(const WorldScore& other) {
   slopes.add(other.slopes);
   potholes.add(other.potholes);
   identities.add(other.identities);
+  costs.add(other.costs);
   things.insert(things.end(), other.things.begin(), other.things.end());
 }
 

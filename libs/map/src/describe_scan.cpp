@@ -2,6 +2,8 @@
 #include <utility>
 
 #include "map_state.h"
+#include "mrpt_terrain/core/field_costs.h"
+#include "mrpt_terrain/core/unseen_cells.h"
 
 namespace mrpt_terrain {
 
@@ -48,6 +50,24 @@ void describe_fused_window(const io::Scan& scan, double time, FusionHalf& fusion
 
 }  // namespace
 
+namespace {
+
+void measure_costs(const io::Scan& scan, MapWriter& writer, TerrainSnapshot& snapshot) {
+  const Description& description = snapshot.description;
+  if (writer.fusion) {
+    // The window's cells are not those of the scan: what they say themselves has to do.
+    compute_cell_costs(description, {}, snapshot.robot, writer.costs, snapshot.costs);
+    return;
+  }
+  const ScanView view{scan.points.view(), origins_of(scan)};
+  compute_cell_costs(description, described_points(view.points, writer.workspace), snapshot.robot,
+                     writer.costs, snapshot.costs);
+  if (!snapshot.costs.has(CostPart::kUnknown)) return;
+  explain_unseen_cells(view, writer.workspace, description, writer.unseen, snapshot.costs.unseen);
+}
+
+}  // namespace
+
 std::shared_ptr<TerrainSnapshot> SnapshotPool::take() {
   std::unique_ptr<TerrainSnapshot> snapshot;
   {
@@ -83,7 +103,7 @@ std::shared_ptr<TerrainSnapshot> describe_scan(const io::Scan& scan,
     describe({scan.points.view(), origins_of(scan)}, params.description, writer.workspace,
              snapshot->description);
   }
-  compute_cell_costs(snapshot->description.grid, params.robot, writer.costs, snapshot->costs);
+  measure_costs(scan, writer, *snapshot);
   return snapshot;
 }
 

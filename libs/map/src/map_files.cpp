@@ -3,7 +3,9 @@
 #include <mrpt/opengl/stock_objects.h>
 #include <octomap/OcTree.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -11,6 +13,7 @@
 
 #include "map_state.h"
 #include "mrpt_terrain/files/atomic_file.h"
+#include "mrpt_terrain/view/cluster_order.h"
 #include "mrpt_terrain/view/cost_view.h"
 #include "mrpt_terrain/view/text.h"
 #include "mrpt_terrain/view/top_view.h"
@@ -73,7 +76,12 @@ struct CostImage {
   std::vector<unsigned char> pixels;
 };
 
-CostImage cost_image(const TerrainSnapshot& snapshot) {
+unsigned char per_cent(double share) {
+  return static_cast<unsigned char>(std::lround(100.0 * std::min(share, 1.0)));
+}
+
+/// \param part the part of the costs; none: the costs
+CostImage cost_image(const TerrainSnapshot& snapshot, std::optional<CostPart> part = {}) {
   constexpr unsigned char kUnknown = 255;
   const GridGeometry& geometry = snapshot.description.grid.geometry;
   CostImage image;
@@ -89,24 +97,58 @@ CostImage cost_image(const TerrainSnapshot& snapshot) {
       const double x = image.corner.x + (column + 0.5) * image.cell_size;
       const double y = image.corner.y + (image.height - row - 0.5) * image.cell_size;
       const Cost cost = snapshot.cost_at(x, y);
-      image.pixels.push_back(
-          is_known(cost) ? static_cast<unsigned char>(std::lround(100.0 * cost.cost)) : kUnknown);
+      // The cost of not knowing is known where nothing else is.
+      const bool known =
+          is_known(cost) || (part == CostPart::kUnknown && cost.status == CostStatus::kUnknown);
+      image.pixels.push_back(known ? per_cent(part ? cost.parts.of(*part) : cost.cost) : kUnknown);
     }
   }
   return image;
 }
 
-void save_cost_map(const CostImage& image, const std::string& prefix) {
+/// \param name of the layer
+void save_cost_map(const CostImage& image, const std::string& prefix, const std::string& name) {
   std::string pgm = "P5\n# per cent of lethal; 255: unknown\n" + std::to_string(image.width) + " " +
                     std::to_string(image.height) + "\n255\n";
   pgm.append(image.pixels.begin(), image.pixels.end());
-  files::write_atomically(prefix + "_cost.pgm", pgm);
+  files::write_atomically(prefix + name + ".pgm", pgm);
   // In mode "raw" map_server takes 0 to 100 as they are, and everything else for unknown.
   files::write_atomically(
-      prefix + "_cost.yaml",
-      "image: " + view::base_name(prefix) + "_cost.pgm\nmode: raw\nresolution: " +
+      prefix + name + ".yaml",
+      "image: " + view::base_name(prefix) + name + ".pgm\nmode: raw\nresolution: " +
           shortest(image.cell_size) + "\norigin: [" + shortest(image.corner.x) + ", " +
           shortest(image.corner.y) + ", 0]\nnegate: 0\noccupied_thresh: 0.99\nfree_thresh: 0.01\n");
+}
+
+/// One map per part of the costs that is known, where there are more than those of the grid.
+void save_layers(const TerrainSnapshot& snapshot, const std::string& prefix) {
+  if (snapshot.revision == 0 || !snapshot.costs.has(CostPart::kObstacle)) return;
+  for (const auto& entry : enum_names(CostPart{})) {
+    save_cost_map(cost_image(snapshot, entry.value), prefix, std::string("_cost_") + entry.name);
+  }
+}
+
+void save_holes(const TerrainSnapshot& snapshot, const std::string& file) {
+  std::string csv = "hole,cluster,x,y,z,length,width,depth,points,rings,confidence\n";
+  const Description& description = snapshot.description;
+  for (std::size_t k = 0; k < description.holes.size(); ++k) {
+    const HoleDescription& hole = description.holes[k];
+    const std::int32_t cluster = view::cluster_of(description, hole);
+    const double z =
+        hole.slot < 0
+            ? 0.0
+            : static_cast<double>(description.grid.h_mean[static_cast<std::size_t>(hole.slot)]);
+    const Eigen::Vector3d at =
+        snapshot.T_map_window * Eigen::Vector3d(hole.centre.x, hole.centre.y, z);
+    csv += std::to_string(k) + "," + (cluster == kNoCluster ? "" : std::to_string(cluster));
+    for (const double value :
+         {at.x(), at.y(), at.z(), hole.length, hole.width, hole.depth,
+          static_cast<double>(hole.points), static_cast<double>(hole.rings), hole.confidence}) {
+      csv += "," + shortest(value);
+    }
+    csv += "\n";
+  }
+  files::write_atomically(file, csv);
 }
 
 std::string line_of(const ClusterView& cluster, std::size_t number) {
@@ -144,7 +186,9 @@ void save_files(const CTerrainMap& map, const std::string& prefix) {
   save_scene(map, prefix + ".3Dscene");
   if (const auto tree = map.octree()) save_octree(*tree, prefix);
   save_clusters(*now, prefix + "_clusters.csv");
-  save_cost_map(cost_image(*now), prefix);
+  if (now->costs.has(CostPart::kObstacle)) save_holes(*now, prefix + "_holes.csv");
+  save_cost_map(cost_image(*now), prefix, "_cost");
+  save_layers(*now, prefix);
   if (now->revision == 0) return;  // there is nothing to draw
   view::TopViewOptions options;
   options.source = prefix;
@@ -152,8 +196,13 @@ void save_files(const CTerrainMap& map, const std::string& prefix) {
   options.stamp = now->stamp;
   options.params = map.params().description;
   if (map.params().creation.fusion == Fusion::kRolling) options.axes = view::ViewAxes::kMap;
+  if (!now->costs.unseen.empty()) options.unseen = &now->costs.unseen;
   view::write_top_view(prefix + "_classes.png", now->description, options);
   view::write_cost_view(prefix + "_cost.png", now->description, now->costs, now->robot, options);
+  if (now->costs.has(CostPart::kObstacle)) {
+    view::write_cost_layers(prefix + "_cost_layers.png", now->description, now->costs, now->robot,
+                            options);
+  }
 }
 
 }  // namespace mrpt_terrain

@@ -13,6 +13,7 @@
 #include "likelihood.h"
 #include "mrpt_terrain/core/describe.h"
 #include "mrpt_terrain/core/thing_tracker.h"
+#include "mrpt_terrain/core/unseen_cells.h"
 #include "mrpt_terrain/map/terrain_map.h"
 #include "octree_half.h"
 
@@ -40,6 +41,7 @@ struct MapWriter {
   io::Scan scan;
   DescriptionWorkspace workspace;
   CostWorkspace costs;
+  UnseenWorkspace unseen;
   std::shared_ptr<SnapshotPool> snapshots = std::make_shared<SnapshotPool>();
   std::uint64_t next_identity = 1;  ///< paper mode
   ThingTracker tracker;             ///< field mode

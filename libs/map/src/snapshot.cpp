@@ -81,17 +81,23 @@ std::vector<Match> matches_of(const std::vector<ClusterView>& now,
 
 }  // namespace
 
-Slot TerrainSnapshot::slot_at(double x, double y, PlaceStatus& status) const {
-  status = PlaceStatus::kOutside;
+Position2 TerrainSnapshot::place_at(double x, double y) const {
+  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
   const Eigen::Vector3d up = T_map_window.linear().col(2);
   const Eigen::Vector3d origin = T_map_window.translation();
   // A window on its edge has no place over (x, y).
-  if (revision == 0 || !(std::abs(up.z()) > 1e-6)) return kUnobserved;
+  if (revision == 0 || !(std::abs(up.z()) > 1e-6)) return {kNowhere, kNowhere};
   const double z = origin.z() - (up.x() * (x - origin.x()) + up.y() * (y - origin.y())) / up.z();
   const Eigen::Vector3d place =
       T_map_window.linear().transpose() * (Eigen::Vector3d(x, y, z) - origin);
+  return {place.x(), place.y()};
+}
+
+Slot TerrainSnapshot::slot_at(double x, double y, PlaceStatus& status) const {
+  status = PlaceStatus::kOutside;
+  const Position2 place = place_at(x, y);
   CellIndex cell;
-  if (!description.grid.geometry.cell_at(place.x(), place.y(), cell)) return kUnobserved;
+  if (!description.grid.geometry.cell_at(place.x, place.y, cell)) return kUnobserved;
   const Slot slot = description.grid.slot_at(cell);
   status = slot == kUnobserved ? PlaceStatus::kUnknown : PlaceStatus::kKnown;
   return slot;
@@ -121,6 +127,15 @@ CellView described_cell(const TerrainSnapshot& snapshot, std::size_t k) {
   return view;
 }
 
+UnseenReason unseen_at(const TerrainSnapshot& snapshot, double x, double y) {
+  const GridGeometry& geometry = snapshot.description.grid.geometry;
+  const Position2 place = snapshot.place_at(x, y);
+  CellIndex cell;
+  if (snapshot.costs.unseen.empty() || !geometry.cell_at(place.x, place.y, cell))
+    return UnseenReason::kSeen;
+  return snapshot.costs.unseen[static_cast<std::size_t>(value_of(geometry.id_of(cell)))];
+}
+
 /// A fused cell that no description covers.
 CellView fused_cell(const TerrainSnapshot& snapshot, double x, double y) {
   CellView view;
@@ -146,9 +161,12 @@ CellView TerrainSnapshot::cell_at(double x, double y) const {
   CellView view;
   const Slot slot = slot_at(x, y, view.status);
   if (view.status == PlaceStatus::kOutside && fused.scans != 0) return fused_cell(*this, x, y);
+  const UnseenReason unseen = unseen_at(*this, x, y);
+  view.unseen = unseen;
   if (slot == kUnobserved) return view;
   const auto k = static_cast<std::size_t>(slot);
   view = described_cell(*this, k);
+  view.unseen = unseen;
   const GridGeometry& geometry = description.grid.geometry;
   const Position2 centre = geometry.centre_of(geometry.index_of(description.grid.cell[k]));
   for (double* height : {&view.height, &view.lowest, &view.highest}) {
@@ -157,20 +175,28 @@ CellView TerrainSnapshot::cell_at(double x, double y) const {
   return view;
 }
 
-Cost TerrainSnapshot::cost_at(double x, double y, double heading) const {
-  PlaceStatus status;
-  const Slot slot = slot_at(x, y, status);
-  if (status == PlaceStatus::kOutside) return Cost{CostStatus::kOutside, 0.0, {}};
-  const Eigen::Vector3d ahead = T_map_window.linear().transpose() *
+namespace {
+
+double heading_in(const TerrainSnapshot& snapshot, double heading) {
+  const Eigen::Vector3d ahead = snapshot.T_map_window.linear().transpose() *
                                 Eigen::Vector3d(std::cos(heading), std::sin(heading), 0.0);
-  return cost_of(costs, slot, robot, std::atan2(ahead.y(), ahead.x()));
+  return std::atan2(ahead.y(), ahead.x());
+}
+
+}  // namespace
+
+Cost TerrainSnapshot::cost_at(double x, double y, double heading) const {
+  return mrpt_terrain::cost_at(description.grid, costs, place_at(x, y), robot,
+                               heading_in(*this, heading));
 }
 
 Cost TerrainSnapshot::cost_at(double x, double y) const {
-  PlaceStatus status;
-  const Slot slot = slot_at(x, y, status);
-  if (status == PlaceStatus::kOutside) return Cost{CostStatus::kOutside, 0.0, {}};
-  return cost_of(costs, slot, robot);
+  return mrpt_terrain::cost_at(description.grid, costs, place_at(x, y), robot);
+}
+
+Cost TerrainSnapshot::footprint_cost_at(double x, double y, double heading) const {
+  return mrpt_terrain::footprint_cost_at(description.grid, costs, place_at(x, y), robot,
+                                         heading_in(*this, heading));
 }
 
 std::vector<std::size_t> TerrainSnapshot::clusters_in(const MapBox& box) const {

@@ -53,6 +53,13 @@ void for_each_cell_of_pixels(const ElevationGrid& grid, Raster<Value>& raster, V
   }
 }
 
+/// kSeen where the cell is observed, whatever was seen in it.
+UnseenReason reason_at(const ElevationGrid& grid, const std::vector<UnseenReason>& reasons,
+                       CellIndex cell) {
+  const auto id = static_cast<std::size_t>(value_of(grid.geometry.id_of(cell)));
+  return grid.slot_of[id] != kUnobserved ? UnseenReason::kSeen : reasons[id];
+}
+
 CellKind kind_of(TerrainClass terrain_class) {
   switch (terrain_class) {
     case TerrainClass::kSlope:
@@ -141,6 +148,41 @@ Raster<Slot> slot_raster(const ElevationGrid& grid, int width, int height,
     }
   });
   return raster;
+}
+
+Raster<UnseenReason> unseen_raster(const ElevationGrid& grid,
+                                   const std::vector<UnseenReason>& reasons, int width,
+                                   int height) {
+  constexpr std::array<int, kUnseenReasonCount> kRank{4, 1, 3, 2};  // seen first
+  const auto rank = [&](UnseenReason reason) { return kRank[static_cast<std::size_t>(reason)]; };
+  Raster<UnseenReason> raster(width, height);
+  const auto rows = spans(grid.geometry.cells_l(), height);
+  const auto columns = spans(grid.geometry.cells_w(), width);
+  UnseenReason* value = raster.values.data();
+  for (const Span& row : rows) {
+    for (const Span& column : columns) {
+      *value = UnseenReason::kOutOfView;
+      for (int l = row.first; l < row.last; ++l) {
+        for (int w = column.first; w < column.last; ++w) {
+          const UnseenReason reason = reason_at(grid, reasons, {l, w});
+          if (rank(reason) > rank(*value)) *value = reason;
+        }
+      }
+      ++value;
+    }
+  }
+  return raster;
+}
+
+std::array<std::size_t, kUnseenReasonCount> count_unseen(const ElevationGrid& grid,
+                                                         const std::vector<UnseenReason>& reasons) {
+  std::array<std::size_t, kUnseenReasonCount> counts{};
+  for (int l = 0; l < grid.geometry.cells_l(); ++l) {
+    for (int w = 0; w < grid.geometry.cells_w(); ++w) {
+      ++counts[static_cast<std::size_t>(reason_at(grid, reasons, {l, w}))];
+    }
+  }
+  return counts;
 }
 
 HeightRange robust_range(const ElevationGrid& grid, double share) {

@@ -21,4 +21,10 @@ std::vector<std::size_t> largest_clusters(const Description& description, std::s
   return order;
 }
 
+std::int32_t cluster_of(const Description& description, const HoleDescription& hole) {
+  const auto& clusters = description.clusters.cluster_of;
+  const bool known = hole.slot >= 0 && static_cast<std::size_t>(hole.slot) < clusters.size();
+  return known ? clusters[static_cast<std::size_t>(hole.slot)] : kNoCluster;
+}
+
 }  // namespace mrpt_terrain::view

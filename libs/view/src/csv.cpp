@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "mrpt_terrain/view/cluster_order.h"
 #include "mrpt_terrain/view/text.h"
 
 namespace mrpt_terrain::view {
@@ -133,6 +134,24 @@ void write_clusters_csv(std::ostream& out, const ScanRecord& scan, const Descrip
     line.count(scan.index).number(scan.stamp).count(k);
     add_cluster(line, description.things[k]);
     line.end();
+  }
+}
+
+void write_holes_csv_header(std::ostream& out) {
+  constexpr std::string_view kHeader =
+      "scan,stamp,hole,cluster,x,y,length,width,depth,points,rings,confidence\n";
+  out.write(kHeader.data(), static_cast<std::streamsize>(kHeader.size()));
+}
+
+void write_holes_csv(std::ostream& out, const ScanRecord& scan, const Description& description) {
+  for (std::size_t k = 0; k < description.holes.size(); ++k) {
+    const HoleDescription& hole = description.holes[k];
+    const std::int32_t cluster = cluster_of(description, hole);
+    Line line(out);
+    line.count(scan.index).number(scan.stamp).count(k);
+    line.text(cluster == kNoCluster ? std::string() : std::to_string(cluster));
+    line.number(hole.centre.x).number(hole.centre.y).number(hole.length).number(hole.width);
+    line.number(hole.depth).count(hole.points).count(hole.rings).number(hole.confidence).end();
   }
 }
 

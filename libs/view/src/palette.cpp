@@ -41,6 +41,19 @@ Rgb between(const std::array<Rgb, N>& colours, double share) {
 
 }  // namespace
 
+Rgb colour_of(UnseenReason reason) {
+  switch (reason) {
+    case UnseenReason::kOutOfView:
+      return kOutOfViewColour;
+    case UnseenReason::kOccluded:
+      return kOccludedColour;
+    case UnseenReason::kNoReturn:
+    case UnseenReason::kSeen:
+      break;
+  }
+  return kUnobservedColour;
+}
+
 Rgb colour_of(TerrainClass terrain_class) {
   switch (terrain_class) {
     case TerrainClass::kSlope:

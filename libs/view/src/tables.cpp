@@ -60,6 +60,20 @@ Row row_of(const Description& description, std::size_t number) {
           status_text(thing)};
 }
 
+std::vector<std::string> hole_row(const Description& description, std::size_t number) {
+  const HoleDescription& hole = description.holes[number];
+  const std::int32_t cluster = cluster_of(description, hole);
+  return {"h" + std::to_string(number),
+          cluster == kNoCluster ? "-" : std::to_string(cluster),
+          fixed(hole.centre.x, 2),
+          fixed(hole.centre.y, 2),
+          fixed(hole.length, 2) + " x " + fixed(hole.width, 2),
+          fixed(100.0 * hole.depth, 1),
+          std::to_string(hole.points),
+          std::to_string(hole.rings),
+          fixed(hole.confidence, 2)};
+}
+
 std::string line_of(const Row& row, const std::array<std::size_t, kColumns>& widths) {
   std::string line;
   for (std::size_t column = 0; column < kColumns; ++column) {
@@ -71,6 +85,31 @@ std::string line_of(const Row& row, const std::array<std::size_t, kColumns>& wid
 }
 
 }  // namespace
+
+std::string hole_table(const Description& description, std::size_t limit) {
+  if (description.holes.empty()) return {};
+  const std::size_t shown = std::min(limit, description.holes.size());
+  std::vector<std::vector<std::string>> rows{{"hole", "cluster", "x [m]", "y [m]", "size [m]",
+                                              "depth [cm]", "points", "rings", "confidence"}};
+  for (std::size_t k = 0; k < shown; ++k) rows.push_back(hole_row(description, k));
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const auto& row : rows) {
+    for (std::size_t column = 0; column < row.size(); ++column) {
+      widths[column] = std::max(widths[column], row[column].size());
+    }
+  }
+  std::string table;
+  for (const auto& row : rows) {
+    for (std::size_t column = 0; column < row.size(); ++column) {
+      if (column > 0) table += "  ";
+      table += std::string(widths[column] - row[column].size(), ' ') + row[column];
+    }
+    table += "\n";
+  }
+  const std::size_t more = description.holes.size() - shown;
+  if (more > 0) table += "... and " + std::to_string(more) + " more\n";
+  return table;
+}
 
 std::string cluster_table(const Description& description, std::size_t limit) {
   std::vector<Row> rows{{"#", "class", "x [m]", "y [m]", "size [m]", "cells", "points", "H_f [m]",

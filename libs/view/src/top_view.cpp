@@ -24,10 +24,12 @@ namespace {
 
 const TextStyle kNumber{11.0, true, Align::kCentre, kInk, false};
 
-void paint_kinds(Canvas& canvas, const MapPanel& panel, const Raster<CellKind>& kinds) {
+void paint_kinds(Canvas& canvas, const MapPanel& panel, const Raster<CellKind>& kinds,
+                 const ElevationGrid& grid, const TopViewOptions& options) {
   Raster<std::uint32_t> pixels(panel.width, panel.height);
   std::transform(kinds.values.begin(), kinds.values.end(), pixels.values.begin(),
                  [](CellKind kind) { return packed(colour_of(kind)); });
+  paint_unseen(grid, options, pixels);
   canvas.paint(pixels, panel.left, panel.top);
 }
 
@@ -79,16 +81,37 @@ void draw_number(Canvas& canvas, const NumberLabel& label, const Box& box) {
   canvas.text(box.left + 0.5 * box.width, box.top + box.height - 4.0, label.text, kNumber);
 }
 
+NumberLabel make_label(Canvas& canvas, const std::string& text, Rgb colour, PixelPosition place) {
+  NumberLabel label{text, colour, {place.x, place.y, 0.0, 15.0}};
+  label.request.width = std::ceil(canvas.text_width(text, kNumber)) + 7.0;
+  return label;
+}
+
+/// Clusters that are holes: those have labels of their own.
+std::vector<bool> clusters_of_holes(const Description& description) {
+  std::vector<bool> result(description.things.size(), false);
+  for (const HoleDescription& hole : description.holes) {
+    const std::int32_t cluster = cluster_of(description, hole);
+    if (cluster != kNoCluster) result[static_cast<std::size_t>(cluster)] = true;
+  }
+  return result;
+}
+
+/// Holes first, because they are small and matter; then clusters, the largest first.
 std::vector<NumberLabel> make_labels(Canvas& canvas, const MapPanel& panel,
                                      const Description& description, std::size_t at_most) {
   std::vector<NumberLabel> labels;
+  for (std::size_t k = 0; k < std::min(description.holes.size(), at_most); ++k) {
+    const HoleDescription& hole = description.holes[k];
+    const std::string text = "h" + std::to_string(k) + " " + fixed(100.0 * hole.depth, 0) + " cm";
+    labels.push_back(make_label(canvas, text, kPotholeColour, panel.pixel_of(hole.centre)));
+  }
+  const std::vector<bool> holes = clusters_of_holes(description);
   for (const std::size_t cluster : largest_clusters(description, at_most)) {
-    const PixelPosition place = panel.pixel_of(anchor_of(description, cluster));
-    NumberLabel label{std::to_string(cluster),
-                      colour_of(description.things[cluster].terrain_class),
-                      {place.x, place.y, 0.0, 15.0}};
-    label.request.width = std::ceil(canvas.text_width(label.text, kNumber)) + 7.0;
-    labels.push_back(label);
+    if (holes[cluster]) continue;
+    labels.push_back(make_label(canvas, std::to_string(cluster),
+                                colour_of(description.things[cluster].terrain_class),
+                                panel.pixel_of(anchor_of(description, cluster))));
   }
   return labels;
 }
@@ -117,15 +140,13 @@ void draw_numbers(Canvas& canvas, const MapPanel& panel, const Description& desc
   }
 }
 
-void draw_legend(Canvas& canvas, const TopViewLayout& layout, const Description& description) {
+void draw_legend(Canvas& canvas, const TopViewLayout& layout, const Description& description,
+                 const TopViewOptions& options) {
   const DescriptionCounts counts = count(description);
   const auto clusters = [&](TerrainClass kind) {
     return std::string(name_of(kind)) + ": " +
            grouped(counts.clusters[static_cast<std::size_t>(kind)]);
   };
-  const GridGeometry& geometry = description.grid.geometry;
-  const std::size_t cells =
-      static_cast<std::size_t>(geometry.cells_l()) * static_cast<std::size_t>(geometry.cells_w());
   const double first = layout.key_top + 12.0;
   const double second = first + 22.0;
   const double left = layout.right_column;
@@ -145,24 +166,27 @@ void draw_legend(Canvas& canvas, const TopViewLayout& layout, const Description&
   draw_legend_entry(canvas, indent, second, colour_of(CellKind::kGround),
                     "ground: " + grouped(counts.ground_cells));
   draw_legend_entry(canvas, indent + quarter + 10.0, second, colour_of(CellKind::kDropped),
-                    "in " + grouped(counts.dropped_groups) + " groups too small");
-  draw_legend_entry(canvas, indent + 2.0 * quarter + 64.0, second, colour_of(CellKind::kUnobserved),
-                    "not observed: " + grouped(cells - counts.observed_cells));
+                    "in " + grouped(counts.dropped_groups) +
+                        (counts.dropped_groups == 1 ? " group" : " groups") + " too small");
+  const double third = second + 22.0;
+  canvas.text(left, third, "not seen", kSmall);
+  draw_unseen_legend(canvas, indent, third, width - 64.0, description.grid, options);
 }
 
 void draw_classes(Canvas& canvas, const TopViewLayout& layout, const Description& description,
                   const TopViewOptions& options) {
   const MapPanel& panel = layout.classes;
   const auto kinds = kind_raster(description, panel.width, panel.height);
-  paint_kinds(canvas, panel, kinds);
+  paint_kinds(canvas, panel, kinds, description.grid, options);
   draw_grid(canvas, panel, options.axes);
   clip_to(canvas, panel);
   draw_robot(canvas, panel);
   draw_numbers(canvas, panel, description, kinds, options.max_labels);
   cairo_restore(canvas.context());
   draw_caption(canvas, panel, layout.right_column, layout.right_column + layout.column_width,
-               "Classes of clusters");
-  draw_legend(canvas, layout, description);
+               description.holes.empty() ? "Classes of clusters"
+                                         : "Classes of clusters; holes (h) with their depth");
+  draw_legend(canvas, layout, description, options);
 }
 
 }  // namespace

@@ -119,6 +119,22 @@ void draw_height_key(Canvas& canvas, const TopViewLayout& layout, const HeightRa
               kTick);
 }
 
+std::string paper_text(const DescriptionParams& params) {
+  return "T_diff " + shortest(params.ground.t_diff) + " m, T_high " +
+         shortest(params.ground.t_high) + " m, T_low " + shortest(params.ground.t_low) +
+         " m;  T_c " + std::to_string(params.clusters.t_c) + " cells;  T_pos " +
+         shortest(params.classes.t_pos) + " m, T_neg " + shortest(params.classes.t_neg) + " m";
+}
+
+// Heights are above the ground reference there.
+std::string field_text(const DescriptionParams& params) {
+  return "field mode: reference in cells of " + shortest(params.ground_surface.cell_size) +
+         " m;  things of " + std::to_string(params.field_clusters.t_c) + " cells or " +
+         std::to_string(params.field_clusters.t_points) + " points;  holes from " +
+         shortest(params.holes.mean_depth) + " m;  T_pos " + shortest(params.classes.t_pos) +
+         " m, T_neg " + shortest(params.classes.t_neg) + " m";
+}
+
 /// Leaves out the middle of a text that is too long for its place.
 std::string shortened(Canvas& canvas, const std::string& text, const TextStyle& style,
                       double room) {
@@ -132,6 +148,47 @@ std::string shortened(Canvas& canvas, const std::string& text, const TextStyle& 
 }
 
 }  // namespace
+
+void draw_frame(Canvas& canvas, const MapPanel& panel) {
+  const PixelPosition origin = panel.pixel_of({0.0, 0.0});
+  canvas.fill_box({origin.x - 3.0, origin.y - 3.0, 6.0, 6.0}, kWhite);
+  canvas.fill_box({origin.x - 2.0, origin.y - 2.0, 4.0, 4.0}, kInk);
+  canvas.frame_box(box_of(panel), kFaintInk);
+}
+
+bool tells_unseen(const ElevationGrid& grid, const TopViewOptions& options) {
+  return options.unseen != nullptr &&
+         options.unseen->size() == static_cast<std::size_t>(grid.geometry.array_size());
+}
+
+void paint_unseen(const ElevationGrid& grid, const TopViewOptions& options,
+                  Raster<std::uint32_t>& pixels) {
+  if (!tells_unseen(grid, options)) return;
+  const auto reasons = unseen_raster(grid, *options.unseen, pixels.width, pixels.height);
+  for (std::size_t k = 0; k < pixels.values.size(); ++k) {
+    if (reasons.values[k] != UnseenReason::kSeen)
+      pixels.values[k] = packed(colour_of(reasons.values[k]));
+  }
+}
+
+void draw_unseen_legend(Canvas& canvas, double left, double base, double width,
+                        const ElevationGrid& grid, const TopViewOptions& options) {
+  if (!tells_unseen(grid, options)) {
+    const std::size_t cells = static_cast<std::size_t>(grid.geometry.cells_l()) *
+                              static_cast<std::size_t>(grid.geometry.cells_w());
+    draw_legend_entry(canvas, left, base, kUnobservedColour,
+                      "not observed: " + grouped(cells - grid.observed()));
+    return;
+  }
+  const auto counts = count_unseen(grid, *options.unseen);
+  const auto entry = [&](double place, UnseenReason reason, const std::string& name) {
+    draw_legend_entry(canvas, left + place * width, base, colour_of(reason),
+                      name + ": " + grouped(counts[static_cast<std::size_t>(reason)]));
+  };
+  entry(0.0, UnseenReason::kOccluded, "occluded");
+  entry(1.0 / 3.0, UnseenReason::kNoReturn, "no return");
+  entry(2.0 / 3.0, UnseenReason::kOutOfView, "out of view");
+}
 
 void draw_grid(Canvas& canvas, const MapPanel& panel, ViewAxes axes) {
   const double step = round_step(kLeastGridStep / panel.pixels_per_metre());
@@ -232,25 +289,27 @@ void draw_title(Canvas& canvas, const TopViewLayout& layout, const Description& 
 void draw_footer(Canvas& canvas, const TopViewLayout& layout, const DescriptionParams& params) {
   const auto number = [](double value) { return shortest(value); };
   const double degrees = 180.0 / 3.14159265358979323846;
-  const std::string grid =
-      "map " + number(params.grid.length) + " m x " + number(params.grid.width) + " m, cells of " +
-      number(params.grid.cell_size) + " m, points below " + number(params.grid.max_height) +
-      " m;  T_diff " + number(params.ground.t_diff) + " m, T_high " + number(params.ground.t_high) +
-      " m, T_low " + number(params.ground.t_low) + " m;  T_c " +
-      std::to_string(params.clusters.t_c) + " cells;  T_pos " + number(params.classes.t_pos) +
-      " m, T_neg " + number(params.classes.t_neg) + " m";
+  const bool field = params.description.mode == DescriptionMode::kField;
+  const std::string grid = "map " + number(params.grid.length) + " m x " +
+                           number(params.grid.width) + " m, cells of " +
+                           number(params.grid.cell_size) + " m, points below " +
+                           number(params.grid.max_height) + " m;  ";
+  const std::string stages = field ? field_text(params) : paper_text(params);
   const std::string features =
       "slopes " + fixed(params.classes.slope_min * degrees, 0) + "° to " +
       fixed(params.classes.slope_max * degrees, 0) + "°;  T_ratio " +
       number(params.roughness.t_ratio) + ", T_L " + number(params.roughness.t_l) + " m², T_S " +
-      number(params.roughness.t_s) + " m²;  T_q " + number(params.slope.inlier_distance) +
-      " m, T_Inlier " + number(params.slope.inlier_share) + ", MaxIterations " +
-      std::to_string(params.slope.max_iterations);
+      number(params.roughness.t_s) + " m²" +
+      (params.slope.method == SlopeMethod::kBeam
+           ? std::string(";  slopes by beams")
+           : ";  T_q " + number(params.slope.inlier_distance) + " m, T_Inlier " +
+                 number(params.slope.inlier_share) + ", MaxIterations " +
+                 std::to_string(params.slope.max_iterations));
   const TextStyle style{11.0, false, Align::kLeft, kFaintInk, false};
   const double base = layout.footer_top + 18.0;
   canvas.line(kMargin, layout.footer_top + 0.5, layout.width - kMargin, layout.footer_top + 0.5,
               kFaintInk, 1.0, 0.5);
-  canvas.text(kMargin, base, grid, style);
+  canvas.text(kMargin, base, grid + stages, style);
   canvas.text(kMargin, base + 17.0, features, style);
 }
 

@@ -6,6 +6,7 @@
 
 #include "canvas.h"
 #include "mrpt_terrain/view/palette.h"
+#include "mrpt_terrain/view/raster.h"
 #include "mrpt_terrain/view/top_view.h"
 #include "mrpt_terrain/view/top_view_layout.h"
 
@@ -31,6 +32,18 @@ void draw_footer(Canvas& canvas, const TopViewLayout& layout, const DescriptionP
 /// The left panel with caption and colour scale.
 void draw_heights(Canvas& canvas, const TopViewLayout& layout, const Description& description,
                   ViewAxes axes);
+
+/// Whether the options tell why cells of a grid were not observed.
+[[nodiscard]] bool tells_unseen(const ElevationGrid& grid, const TopViewOptions& options);
+/// Colours of the reasons over the pixels that show `kUnobservedColour`, if they are told.
+void paint_unseen(const ElevationGrid& grid, const TopViewOptions& options,
+                  Raster<std::uint32_t>& pixels);
+/// A row of the legend: cells that were not observed by reason, or all of them.
+void draw_unseen_legend(Canvas& canvas, double left, double base, double width,
+                        const ElevationGrid& grid, const TopViewOptions& options);
+
+/// The edge of a panel, and the robot as a dot.
+void draw_frame(Canvas& canvas, const MapPanel& panel);
 
 /// Lines of the grid over what was painted, and the axes.
 void draw_grid(Canvas& canvas, const MapPanel& panel, ViewAxes axes);

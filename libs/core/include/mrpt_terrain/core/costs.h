@@ -10,17 +10,18 @@
 #include "mrpt_terrain/core/feature_status.h"
 #include "mrpt_terrain/core/local_planes.h"
 #include "mrpt_terrain/core/param_info.h"
+#include "mrpt_terrain/core/unseen_reason.h"
 
 /// \file
-/// What it costs a robot to drive over a cell: the largest of three parts, slope, step and
-/// roughness, each a measured number over the robot's limit for it. doc/costs.md has the formulas
-/// with their reasons.
+/// What it costs a robot to drive over a cell: the largest of some parts, such as slope, step and
+/// roughness, each a measured number over the robot's limit for it. Four more parts need what field
+/// mode knows (field_costs.h). doc/costs.md has the formulas with their reasons.
 namespace mrpt_terrain {
 
 /// A robot as its file in params/robots/ describes it. The defaults are a small outdoor robot.
 ///
-/// `compute_cell_costs` and `cost_of` read `footprint_width` (size of the windows) and the four
-/// `max_` limits; the other dimensions are for those who plan with the same file.
+/// Grids without a description of field mode have costs from `footprint_width` (size of the
+/// windows) and the four `max_` limits alone.
 struct RobotParams {
   double footprint_length = 0.5;          ///< metres
   double footprint_width = 0.4;           ///< metres
@@ -31,6 +32,11 @@ struct RobotParams {
   double max_tilt = 0.26179938779914946;  ///< 15 deg, radians
   double max_step = 0.08;                 ///< metres
   double max_roughness = 0.05;            ///< metres
+  double overhead_reserve = 0.1;          ///< metres over `height` that have to be free
+  double least_confidence = 0.03;         ///< [0, 1]: things and holes less certain do not stop it
+  double cost_out_of_view = 0.3;          ///< [0, 1): of ground where no beam points,
+  double cost_occluded = 0.6;             ///< behind or under something,
+  double cost_no_return = 0.5;            ///< or where nothing came back
 
   template <class Self, class Visitor>
   static void visit_params(Self& self, Visitor&& visit) {
@@ -53,6 +59,19 @@ struct RobotParams {
     visit(self.max_roughness,
           ParamInfo{"max_roughness", "", "m", 0.001, 5.0,
                     "standard deviation of heights about the plane from which a cell is lethal"});
+    visit(self.overhead_reserve,
+          ParamInfo{"overhead_reserve", "", "m", 0.0, 5.0,
+                    "field mode: cells are free under what hangs this much above the robot"});
+    visit(self.least_confidence,
+          ParamInfo{"least_confidence", "", "", 0.0, 1.0,
+                    "field mode: things and holes with less confidence are not lethal"});
+    visit(self.cost_out_of_view, ParamInfo{"cost_out_of_view", "", "", 0.0, 0.99,
+                                           "field mode: cost of ground that no beam points at"});
+    visit(self.cost_occluded, ParamInfo{"cost_occluded", "", "", 0.0, 0.99,
+                                        "field mode: cost of ground behind or under something"});
+    visit(self.cost_no_return,
+          ParamInfo{"cost_no_return", "", "", 0.0, 0.99,
+                    "field mode: cost of ground in view from which nothing came back"});
   }
 
   /// The section of a robot file.
@@ -76,6 +95,45 @@ constexpr EnumNames<CostStatus, 4> enum_names(CostStatus) {
            {CostStatus::kOutside, "outside"}}};
 }
 
+/// The parts of a cost, each a layer over the grid. The first three are known of every grid, the
+/// others of descriptions of field mode.
+enum class CostPart : std::uint8_t {
+  kSlope = 0,  ///< angle over the limit of climb or tilt
+  kStep,       ///< height of a step of the ground over the limit
+  kRoughness,  ///< scatter of the ground over the limit
+  kObstacle,   ///< height of what stands in the cell over the smaller of step and clearance
+  kPothole,    ///< how far a wheel falls over the limit of steps
+  kUnknown,    ///< cost of ground that was not seen, by the reason why
+  kDoubt,      ///< height of a step that noise may hide over the limit
+};
+inline constexpr std::size_t kCostPartCount = 7;
+constexpr EnumNames<CostPart, kCostPartCount> enum_names(CostPart) {
+  return {{{CostPart::kSlope, "slope"},
+           {CostPart::kStep, "step"},
+           {CostPart::kRoughness, "roughness"},
+           {CostPart::kObstacle, "obstacle"},
+           {CostPart::kPothole, "pothole"},
+           {CostPart::kUnknown, "unknown"},
+           {CostPart::kDoubt, "doubt"}}};
+}
+
+/// A hole as a wheel meets it.
+struct HoleExtent {
+  float depth = 0.0F;       ///< metres below the rim, as far as it was seen
+  float length = 0.0F;      ///< along its longer side, metres
+  float width = 0.0F;       ///< along its shorter side, metres
+  float yaw = 0.0F;         ///< of the longer side, from x towards y, radians
+  float confidence = 0.0F;  ///< [0, 1]
+
+  /// Way through its middle in a heading (radians), metres: across an ellipse as long and wide.
+  [[nodiscard]] double extent_along(double heading) const;
+};
+
+/// By how much a wheel falls into a hole, metres: all its depth, or until it touches the two edges
+/// where they are closer than its diameter.
+/// \param extent way across the hole, metres
+[[nodiscard]] double wheel_drop(double depth, double extent, double wheel_radius);
+
 /// What the ground is like in each observed cell; arrays over the slots of a grid. Independent of
 /// the robot's limits but for what `compute_cell_costs` says.
 struct CellCosts {
@@ -85,8 +143,51 @@ struct CellCosts {
   std::vector<float> roughness;       ///< standard deviation about the plane, metres, >= 0
   std::vector<FeatureStatus> status;  ///< of gradient and roughness: they mean something when kOk.
                                       ///< The step is known always, as far as points tell.
+  // Of descriptions of field mode only (field_costs.h); empty otherwise.
+  std::vector<float> obstacle;       ///< height of what stands in the robot's way, metres, >= 0
+  std::vector<float> likely;         ///< [0, 1]: that it does; 1 where nothing stands
+  std::vector<std::int32_t> hole;    ///< number in `holes`, or -1
+  std::vector<float> doubt;          ///< two standard errors of the ground's height, metres, >= 0
+  std::vector<UnseenReason> ground;  ///< kSeen, or why the ground in the cell was not
+  std::vector<HoleExtent> holes;
+  /// Per `CellId`: why nothing is known of its ground (`explain_unseen_cells`). Empty: not told.
+  std::vector<UnseenReason> unseen;
 
   [[nodiscard]] std::size_t size() const { return status.size(); }
+  /// Whether a part is known of these costs.
+  [[nodiscard]] bool has(CostPart part) const {
+    return part <= CostPart::kRoughness || obstacle.size() == status.size();
+  }
+};
+
+/// What the points of a cell are.
+enum class CellMix : std::uint8_t {
+  kNone = 0,  ///< ground
+  kGround,    ///< ground and what stands on it or lies below
+  kLow,       ///< ground that lies low, and what stands on it
+  kDeck,      ///< a deck and what lies beside
+  kHole       ///< the floor of a hole
+};
+
+/// What the points of a mixed cell are: ground, and what stands in it. Heights are metres, frame of
+/// the grid.
+struct MixedCell {
+  float low = std::numeric_limits<float>::max();      ///< lowest drivable point
+  float high = std::numeric_limits<float>::lowest();  ///< highest drivable point
+  float top = std::numeric_limits<float>::lowest();   ///< highest of what stands, or of a deck
+  float foot = 0.0F;                                  ///< sum over the ground it stands on
+  std::int32_t foot_points = 0;
+  std::int32_t standing = 0;  ///< points in the robot's way
+};
+
+/// Points that a wheel can rest on, in the cells of a description of field mode.
+struct DrivableCells {
+  std::vector<MomentSums> sums;       ///< per slot
+  std::vector<float> extent;          ///< per slot: highest less lowest of them, metres
+  std::vector<CellMix> mixed;         ///< per slot
+  std::vector<std::uint8_t> skipped;  ///< per slot: no window is wanted about it
+  std::vector<MixedCell> cells;       ///< per slot; left as they are where cells are not mixed
+  std::vector<std::int32_t> hole_of;  ///< per cluster: number of its hole, or -1
 };
 
 /// How well the plane of a window is known. Windows without a plane have no cells.
@@ -115,6 +216,7 @@ struct CostWorkspace {
   std::vector<CellSurface> surfaces;     ///< likewise
   /// Per slot: how many slots from it on are of cells that follow each other in a row, up to 8.
   std::vector<std::uint8_t> in_row;
+  DrivableCells drivable;  ///< field mode only
 };
 
 /// Cells to each side of a window: half the robot's width, from 1 to kMaxReach cells. A window is
@@ -149,13 +251,23 @@ struct CostParts {
   double slope = 0.0;
   double step = 0.0;
   double roughness = 0.0;
+  // In field mode only:
+  double obstacle = 0.0;
+  double pothole = 0.0;
+  double unknown = 0.0;  ///< below 1
+  double doubt = 0.0;    ///< below 1
+
+  [[nodiscard]] double of(CostPart part) const;
+  [[nodiscard]] double largest() const;
 };
 
 /// Cost of driving on a cell.
 struct Cost {
   CostStatus status = CostStatus::kUnknown;
-  double cost = 0.0;  ///< [0, 1]; means something when status is kOk or kLethal
-  CostParts parts;    ///< slope and roughness are 0 where they are not known
+  /// [0, 1]; 1 only if lethal. Of unknown cells, it is what is known of them, in field mode the
+  /// cost of not knowing included; 0 says nothing then.
+  double cost = 0.0;
+  CostParts parts;  ///< slope and roughness are 0 where they are not known
 };
 
 /// Cost in a heading: slope is the greater of the angle along the heading over `max_climb` and the
@@ -169,10 +281,21 @@ struct Cost {
 /// Cost in the worst heading: the whole slope, over the smaller of the two limits.
 [[nodiscard]] Cost cost_of(const CellCosts& costs, Slot slot, const RobotParams& robot);
 
+/// Cost of ground that was not seen: kUnknown, with what the robot's file says of the reason.
+[[nodiscard]] Cost cost_of_unseen(UnseenReason reason, const RobotParams& robot);
+
 /// The same at a position in the frame of the grid, metres; kOutside beyond the edges and for NaN.
 [[nodiscard]] Cost cost_at(const ElevationGrid& grid, const CellCosts& costs, Position2 position,
                            const RobotParams& robot, double heading);
 [[nodiscard]] Cost cost_at(const ElevationGrid& grid, const CellCosts& costs, Position2 position,
                            const RobotParams& robot);
+
+/// Cost of standing at a position: the worst of all cells that the robot's footprint touches, a
+/// rectangle of `footprint_length` along the heading and `footprint_width` across about the
+/// position. Lethal if any cell is; else outside if any is beyond the grid; else unknown if any is.
+/// Cost and parts are the largest of all cells. kOutside for NaN.
+/// \param heading radians from the grid's x axis, counter-clockwise
+[[nodiscard]] Cost footprint_cost_at(const ElevationGrid& grid, const CellCosts& costs,
+                                     Position2 position, const RobotParams& robot, double heading);
 
 }  // namespace mrpt_terrain

@@ -44,4 +44,20 @@ struct LocalPlane {
 /// \param[out] planes one per slot; keeps its memory
 void fit_local_planes(const ElevationGrid& grid, int reach, std::vector<LocalPlane>& planes);
 
+/// Other points in the cells of a grid, and which cells do without a window. All borrowed.
+struct CellSelection {
+  const std::vector<MomentSums>& sums;  ///< per slot: of its points, about the frame's origin
+  /// Per slot: not 0 where no plane is wanted; null: all are.
+  const std::vector<std::uint8_t>* skipped = nullptr;
+
+  [[nodiscard]] bool is_skipped(std::size_t slot) const {
+    return skipped != nullptr && (*skipped)[slot] != 0;
+  }
+};
+
+/// The same with other points. Cells without any count as not observed in the windows of others.
+/// \param[out] planes kTooFewPoints with no cells where skipped
+void fit_local_planes(const ElevationGrid& grid, const CellSelection& cells, int reach,
+                      std::vector<LocalPlane>& planes);
+
 }  // namespace mrpt_terrain

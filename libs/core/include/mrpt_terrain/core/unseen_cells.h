@@ -1,26 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "mrpt_terrain/core/describe.h"
+#include "mrpt_terrain/core/unseen_reason.h"
 
 namespace mrpt_terrain {
-
-/// Why nothing is known of the ground in a cell.
-enum class UnseenReason : std::uint8_t {
-  kSeen = 0,   ///< it holds points on or below the ground
-  kOutOfView,  ///< no beam points there: nearer than the lowest beams, or beside the field of view
-  kOccluded,   ///< behind something that stands nearer in that direction, or under it
-  kNoReturn,   ///< in view, but nothing came back: between rings, too far, water, the ground ends
-};
-constexpr EnumNames<UnseenReason, 4> enum_names(UnseenReason) {
-  return {{{UnseenReason::kSeen, "seen"},
-           {UnseenReason::kOutOfView, "out_of_view"},
-           {UnseenReason::kOccluded, "occluded"},
-           {UnseenReason::kNoReturn, "no_return"}}};
-}
 
 /// A thing in a sector as the sensor sees it.
 struct SectorThing {
@@ -28,8 +16,19 @@ struct SectorThing {
   float top;    ///< tangent of the elevation of its highest point, or of one before it
 };
 
+/// Direction and distance of a place from the sensor.
+struct SectorPlace {
+  int sector = -1;     ///< of half a degree; -1: none
+  float range = 0.0F;  ///< horizontal, metres
+};
+
 /// Scratch memory of `explain_unseen_cells`.
 struct UnseenWorkspace {
+  std::vector<SectorPlace> places;  ///< per point
+  // Of the cells, as long as they and the sensor stay the same:
+  GridGeometry geometry;
+  std::array<float, 3> origin{};
+  std::vector<SectorPlace> cells;   ///< cell l * cells_w + w
   std::vector<float> lowest;        ///< per sector: tangent of the lowest beam with a return
   std::vector<std::int32_t> first;  ///< per sector, and one more: its things
   std::vector<std::int32_t> count;  ///< per sector

@@ -7,6 +7,7 @@
 
 #include "mrpt_terrain/core/thing_tracker.h"
 #include "mrpt_terrain/eval/cluster_score.h"
+#include "mrpt_terrain/eval/cost_score.h"
 #include "mrpt_terrain/eval/identity_score.h"
 #include "mrpt_terrain/eval/pothole_score.h"
 #include "mrpt_terrain/eval/slope_score.h"
@@ -26,6 +27,7 @@ struct WorldScore {
   PotholeScore potholes;
   IdentityScore identities;         ///< if `WorldTask::follow`
   std::vector<ThingRecord> things;  ///< if `WorldTask::list_things`
+  CostScore costs;                  ///< if `WorldTask::costs`
   void add(const WorldScore& other);
 };
 
@@ -33,6 +35,7 @@ struct ScoreRules {
   ClusterRules clusters;
   PotholeRules potholes;
   ApproachRules approach;
+  CostRules costs;
 };
 
 /// The method under test: describes one scan into `description`.
@@ -61,6 +64,7 @@ struct WorldTask {
   const ScoreRules& rules;
   const Describe& describe;
   ScoredScanListener listener;  ///< may be empty
+  MeasureCosts costs = {};      ///< empty: costs are not looked at
 };
 
 /// Makes a world, drives through it, describes scans and compares them with the truth. The same

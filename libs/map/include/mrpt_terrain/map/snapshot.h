@@ -36,6 +36,10 @@ struct CellView {
   Support support = Support::kUnknown;
   TerrainClass terrain_class = TerrainClass::kNone;  ///< of its cluster
   std::int32_t cluster = kNoCluster;                 ///< index into `TerrainSnapshot::clusters`
+  /// Why the last scan showed no ground here: also where something else is known of the cell, and
+  /// where nothing is (status kUnknown). kSeen beyond the window, and where nobody tells: in paper
+  /// mode and with `fusion = rolling`.
+  UnseenReason unseen = UnseenReason::kSeen;
 };
 
 /// Axis-parallel rectangle in the map frame, metres.
@@ -74,8 +78,8 @@ class TerrainSnapshot {
   std::vector<std::array<float, 3>> ray_origins;
   std::vector<std::uint32_t> origin_of;
   std::vector<ClusterView> clusters;  ///< one per `description.things`, same numbers
-  CellCosts costs;                    ///< per slot of the description's grid
-  RobotParams robot;                  ///< that the costs are for
+  CellCosts costs;    ///< per slot of the description's grid; `unseen` per cell of it
+  RobotParams robot;  ///< that the costs are for
 
   /// With `fusion = rolling`: all cells of the map, also those beyond the window, how they are
   /// read, and what else is known of the window's (per slot). Empty with `fusion = scan`.
@@ -92,6 +96,9 @@ class TerrainSnapshot {
   [[nodiscard]] Cost cost_at(double x, double y, double heading) const;
   /// The same for the worst heading.
   [[nodiscard]] Cost cost_at(double x, double y) const;
+  /// Cost of standing at (x, y) of the map, looking along `heading`: the worst of all cells that
+  /// the robot's footprint touches (costs.h).
+  [[nodiscard]] Cost footprint_cost_at(double x, double y, double heading) const;
 
   /// Indices of the clusters whose boxes touch a box, ascending.
   [[nodiscard]] std::vector<std::size_t> clusters_in(const MapBox& box) const;
@@ -99,6 +106,10 @@ class TerrainSnapshot {
   /// Slot of the window's cell over (x, y) of the map, kUnobserved where nothing was seen.
   /// \param[out] status
   [[nodiscard]] Slot slot_at(double x, double y, PlaceStatus& status) const;
+
+  /// Place of the window's plane z = 0 over (x, y) of the map, frame of the window, metres. NaN
+  /// while the map is empty and for windows on their edge.
+  [[nodiscard]] Position2 place_at(double x, double y) const;
 
   /// Fills `clusters` from `description`, without identities.
   void list_clusters();

@@ -97,7 +97,9 @@ class CTerrainMap : public mrpt::maps::CMetricMap {
   /// Draws what `[..._renderOpts]` asks for, in the map frame.
   void getVisualizationInto(mrpt::opengl::CSetOfObjects& objects) const override;
   /// Writes PREFIX.3Dscene, PREFIX.ot and PREFIX.bt (octovis), PREFIX_classes.png, PREFIX_cost.png,
-  /// PREFIX_clusters.csv, PREFIX_cost.pgm with PREFIX_cost.yaml (ROS map_server).
+  /// PREFIX_clusters.csv, PREFIX_cost.pgm with PREFIX_cost.yaml (ROS map_server); in field mode
+  /// also PREFIX_holes.csv, PREFIX_cost_layers.png, and PREFIX_cost_PART.pgm with its .yaml for
+  /// each part.
   void saveMetricMapRepresentationToFile(const std::string& prefix) const override;
   /// 0: a terrain map takes no part in matching.
   [[nodiscard]] float compute3DMatchingRatio(

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
 #include "mrpt_terrain/core/describe.h"
+#include "mrpt_terrain/core/unseen_reason.h"
 #include "mrpt_terrain/view/palette.h"
 #include "mrpt_terrain/view/raster.h"
 
@@ -40,6 +42,17 @@ enum class CellKind : std::uint8_t {
 [[nodiscard]] Raster<Slot> slot_raster(
     const ElevationGrid& grid, int width, int height,
     const std::function<bool(std::size_t a, std::size_t b)>& less);
+
+/// Reasons why cells were not observed the same way; kSeen where a cell of the pixel is observed.
+/// Of several, occluded shows before no return and that before out of view. \param reasons per
+/// `CellId` of the grid
+[[nodiscard]] Raster<UnseenReason> unseen_raster(const ElevationGrid& grid,
+                                                 const std::vector<UnseenReason>& reasons,
+                                                 int width, int height);
+
+/// Number of cells that were not observed, by reason (`kSeen`: those that were).
+[[nodiscard]] std::array<std::size_t, kUnseenReasonCount> count_unseen(
+    const ElevationGrid& grid, const std::vector<UnseenReason>& reasons);
 
 /// Heights that a colour scale spans, metres.
 struct HeightRange {

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "mrpt_terrain/core/labels.h"
+#include "mrpt_terrain/core/unseen_reason.h"
 
 namespace mrpt_terrain::view {
 
@@ -30,6 +31,15 @@ inline constexpr Rgb kDroppedColour{222, 200, 165};
 inline constexpr Rgb kUnknownColour{214, 214, 214};
 /// Cells that no point has hit.
 inline constexpr Rgb kUnobservedColour{255, 255, 255};
+
+/// Cells whose ground was not seen, where it is known why: pale, and paler the less there is to
+/// know.
+inline constexpr Rgb kOutOfViewColour{240, 232, 214};
+inline constexpr Rgb kOccludedColour{198, 202, 214};
+
+/// Colour of a cell that was not observed; without a reason and where nothing came back it is
+/// `kUnobservedColour`.
+[[nodiscard]] Rgb colour_of(UnseenReason reason);
 
 /// Colour of a cluster's class; `kNone` has that of small groups.
 [[nodiscard]] Rgb colour_of(TerrainClass terrain_class);

@@ -14,6 +14,11 @@ namespace mrpt_terrain::view {
 /// reason in the last column.
 [[nodiscard]] std::string cluster_table(const Description& description, std::size_t limit = 20);
 
+/// The holes of a scan as such a table, in their order, at most `limit`: number, cluster ("-" if it
+/// is in none), place, size, depth below the rim (as far as it was seen), points and rings on the
+/// floor, confidence. Empty without holes.
+[[nodiscard]] std::string hole_table(const Description& description, std::size_t limit = 20);
+
 /// One line without newline: "12 clusters: 7 obstacle, 2 slope, 1 pothole, 2 other; 31 groups too
 /// small".
 [[nodiscard]] std::string class_summary(const Description& description);
