@@ -42,6 +42,13 @@ void score_scan(const WorldTask& task, const DrivenWorld& world, std::size_t swe
     wrong.sweep = sweep;
     score.potholes.wrong.push_back(std::move(wrong));
   }
+  GapScore gaps = judge_gaps(description, scan.truth, task.rules.gaps);
+  for (FalseGap& wrong : gaps.wrong) {
+    wrong.family = world.family;
+    wrong.seed = world.seed;
+    wrong.sweep = sweep;
+  }
+  score.gaps.add(gaps);
   if (task.list_things) {
     for (ThingRecord& record :
          list_things(points, scan.truth, description.labels, description.things, matching)) {
@@ -109,6 +116,7 @@ void WorldScore::add(const WorldScore& other) {
   clusters.add(other.clusters);
   slopes.add(other.slopes);
   potholes.add(other.potholes);
+  gaps.add(other.gaps);
   identities.add(other.identities);
   things.insert(things.end(), other.things.begin(), other.things.end());
 }
