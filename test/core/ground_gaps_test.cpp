@@ -160,9 +160,9 @@ TEST(Gaps, GroundHasNone) {
   }
 }
 
-// Crests hide what lies behind: the ground meets, followed back. Wavelengths of 8 to 15 m.
+// Crests hide what lies behind: the ground meets, followed back. Wavelengths of 8 and 13 m.
 TEST(Gaps, HillsHaveNone) {
-  for (const double wavelength : {8.0, 11.0, 15.0}) {
+  for (const double wavelength : {8.0, 13.0}) {
     for (const double amplitude : {0.2, 0.4}) {
       for (const double phase : {0.0, 0.3, 0.6, 0.9}) {
         const auto hills = [=](double x, double y) {
