@@ -216,8 +216,10 @@ class RayWalk {
   }
 
   void meet_low(const Met& met, float depth, float tolerance) {
+    const float fall = (sensor_ - met.mean) / met.range;
+    if (fall < flattest()) return;
     if (low_ == 0) {
-      begin_ = std::clamp(range_of((sensor_ - met.mean) / met.range), near_.last(), met.range);
+      begin_ = std::clamp(range_of(fall), near_.last(), met.range);
       tolerance_ = tolerance;
       chord_ = depth / std::max(met.range - near_.last(), kShortestStep);
     }

@@ -44,7 +44,7 @@ constexpr double kSurfaceReach = 1.01;
 constexpr double kLowerAround = 0.5, kHigherAround = 0.5;
 // There is rim in a direction if so many of the cells that look out there see it...
 constexpr double kSideShare = 0.3;
-// So many looks out of a small hole may meet no rim: cells at its walls.
+// So many looks out of a small hole may meet no rim, but cells at its walls, if two rings show it.
 constexpr double kFewOthers = 2.0;
 // ...and of the four pairs of opposite directions, so many have it on both sides: rim on one side
 // alone may be a step.
@@ -523,10 +523,12 @@ bool is_hole(HoleCase& hole, HoleDescription& description) {
   const HoleCounts counts = count_points(hole);
   if (counts.floor < hole.params.least_points) return false;
   look_around(hole);
-  if (hole.others > std::max(kFewOthers, (1.0 - hole.params.closed) * hole.around)) return false;
+  const double most_others = (1.0 - hole.params.closed) * hole.around;
+  if (hole.others > std::max(kFewOthers, most_others)) return false;
   if (hole.seen < hole.params.seen || opposite_sides(hole.sides) < kFewestOpposite) return false;
   RingEvidence rings;
   if (!has_walls(hole, counts, rings)) return false;
+  if (rings.rings < 2 && hole.others > most_others) return false;
   description = describe_hole(hole, counts, rings);
   return true;
 }
