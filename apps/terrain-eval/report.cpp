@@ -127,6 +127,37 @@ TextTable pothole_table(const std::vector<NamedScore>& scores) {
   return table;
 }
 
+TextTable gap_table(const std::vector<NamedScore>& scores) {
+  TextTable table{"Ditches and drops told without a floor, every scan apart", {}, {}, ""};
+  table.header = {"", "gaps", "drops", "free space", "ground m2", "false", "per 1000 m2"};
+  for (const NamedScore& entry : scores) {
+    const eval::GapScore& score = entry.score.gaps;
+    const double ground = entry.score.potholes.ground;
+    table.rows.push_back({entry.name, count(score.described[1]), count(score.described[2]),
+                          count(score.described[3]), number(ground, 0), count(score.wrong.size()),
+                          number(1000.0 * static_cast<double>(score.wrong.size()) / ground, 2)});
+  }
+  return table;
+}
+
+TextTable false_gap_table(const WorldScore& score, bool details) {
+  constexpr std::size_t kShown = 20;
+  TextTable table{"False ditches and drops", {}, {}, ""};
+  table.header = {"family",   "seed",   "sweep", "kind",  "x",         "y",
+                  "distance", "length", "width", "depth", "confidence"};
+  const auto& wrong = score.gaps.wrong;
+  const std::size_t shown = details ? wrong.size() : std::min(kShown, wrong.size());
+  for (std::size_t k = 0; k < shown; ++k) {
+    const eval::FalseGap& entry = wrong[k];
+    table.rows.push_back(
+        {entry.family, std::to_string(entry.seed), count(entry.sweep), name_of(entry.kind),
+         number(entry.x, 2), number(entry.y, 2), number(entry.distance, 1), number(entry.length, 2),
+         number(entry.width, 2), number(entry.depth, 2), number(entry.confidence, 2)});
+  }
+  if (shown < wrong.size()) table.note = "and " + count(wrong.size() - shown) + " more: --details";
+  return table;
+}
+
 TextTable detection_table(const NamedScore& entry) {
   TextTable table{"Potholes over distance in " + entry.name, {}, {}, ""};
   table.header = {"m", "due", "found %", "right size", "found %"};
@@ -237,6 +268,7 @@ std::vector<TextTable> world_tables(const std::vector<NamedScore>& scores, bool 
   TextTable slopes = slope_table(scores);
   if (!slopes.rows.empty()) tables.push_back(std::move(slopes));
   tables.push_back(pothole_table(scores));
+  tables.push_back(gap_table(scores));
   for (const NamedScore& entry : scores) {
     const bool wanted = details || &entry == &scores.back();
     if (wanted && entry.score.potholes.found_small.total > 0) {
@@ -246,6 +278,7 @@ std::vector<TextTable> world_tables(const std::vector<NamedScore>& scores, bool 
   const WorldScore& all = scores.back().score;
   if (all.identities.objects > 0) tables.push_back(identity_table(scores));
   if (all.costs.blocked.total > 0) tables.push_back(cost_table(scores));
+  if (!all.gaps.wrong.empty()) tables.push_back(false_gap_table(all, details));
   if (!all.potholes.wrong.empty()) tables.push_back(false_table(all, details));
   return tables;
 }

@@ -93,6 +93,16 @@ void add_potholes(const eval::PotholeScore& score, Lines& lines) {
   lines.add("pothole_in_time", "on path", score.ahead);
 }
 
+void add_gaps(const eval::GapScore& score, double ground, Lines& lines) {
+  for (std::size_t kind = 1; kind < score.described.size(); ++kind) {
+    lines.add("gaps", name_of(static_cast<HoleKind>(kind)),
+              static_cast<double>(score.described[kind]), score.described[kind]);
+  }
+  const auto wrong = static_cast<double>(score.wrong.size());
+  lines.add("false_gaps", "all", wrong, score.wrong.size());
+  lines.add("false_gaps", "per 1000 m2", 1000.0 * wrong / ground, score.wrong.size());
+}
+
 void add_identities(const eval::IdentityScore& score, Lines& lines) {
   lines.add("identity_kept", "seen", score.kept);
   lines.add("identity_kept", "found", score.kept_where_found);
@@ -130,6 +140,7 @@ std::string world_csv(const std::vector<NamedScore>& scores) {
     add_errors("slope_angle", eval::angle_summary(score.slopes), lines);
     add_errors("slope_direction", eval::direction_summary(score.slopes), lines);
     add_potholes(score.potholes, lines);
+    add_gaps(score.gaps, score.potholes.ground, lines);
     add_identities(score.identities, lines);
     add_costs(score.costs, lines);
     text += lines.text();

@@ -64,6 +64,36 @@ TEST(HoleRings, GradualSidesAreNoWalls) {
   EXPECT_EQ(evidence.walled, 0);
 }
 
+// Hollows of rolling ground deepen from 0.56 of the depth at both ends to 1.4 in the middle (a
+// fifth of a floor's points lies deeper than its depth), and a few steps that are steeper than the
+// others make no walls of their ends. Without the six points that a wall may have, the outermost
+// eighths lie at 0.90, all at 1.19: 0.76, less than 0.8. A floor that begins as deep has walls.
+TEST(HoleRings, WhatDeepensTowardsTheMiddleHasNoWalls) {
+  const auto within = [](int step) { return std::abs(step) <= 45; };
+  const RingEvidence hollow = evidence_of(rings_of(3, [&](int step) {
+    const double share = 1.4 - 0.84 * step * step / 2025.0;
+    return within(step) ? kDepth * share : 0.25 * kDepth;
+  }));
+  EXPECT_EQ(hollow.walled, 0);
+  const RingEvidence floor = evidence_of(
+      rings_of(3, [&](int step) { return within(step) ? 0.9 * kDepth : 0.25 * kDepth; }));
+  EXPECT_EQ(floor.walled, 3 * 91);
+}
+
+// The rim and the floor of a hole differ by more than the points of the rim do.
+TEST(HoleRings, NoiseHidesWalls) {
+  for (const double noise : {0.002, 0.03}) {
+    RandomGenerator random(303);
+    std::vector<HolePoint> points =
+        rings_of(3, [](int step) { return std::abs(step) <= 10 ? kDepth : 0.0; });
+    for (HolePoint& p : points) {
+      if (p.zone == HoleZone::kRim)
+        p.depth += static_cast<float>(noise * worlds::normal_deviate(random));
+    }
+    EXPECT_EQ(evidence_of(points).walled > 0, noise < 0.01) << noise;
+  }
+}
+
 // One side alone is a step; where the ring leaves what is looked at, it may be a hole.
 TEST(HoleRings, OneWallIsEnoughOnlyWhereTheOtherIsOutOfSight) {
   const auto step_down = [](int step) { return step > 0 ? kDepth : 0.0; };

@@ -27,11 +27,12 @@ struct Holes {
   FieldStages stages;
   HoleWorkspace workspace;
   std::vector<HoleDescription> found;
+  IndexRows found_cells;
 
   void find(const ScanView& scan, const HoleParams& params = {}) {
     worlds::measure(scan.points, worlds::field_params(), stages);
     find_holes({stages.field, stages.grid, scan.origins}, params, workspace, stages.cells,
-               stages.ground, found);
+               stages.ground, found, found_cells);
   }
   void find(const Points& points, const HoleParams& params = {}) { find(points.view(), params); }
   /// Slots whose cells the holes consist of.
@@ -257,7 +258,7 @@ TEST(Holes, UsedMemoryLeavesNoTraceAndASecondTimeDoesNotAllocate) {
   EXPECT_EQ(used.stages.cells.rim, fresh.stages.cells.rim);
   const std::size_t before = bench::allocations();
   find_holes({used.stages.field, used.stages.grid, {}}, {}, used.workspace, used.stages.cells,
-             used.stages.ground, used.found);
+             used.stages.ground, used.found, used.found_cells);
   EXPECT_EQ(bench::allocations(), before);
 }
 
@@ -375,9 +376,12 @@ TEST(HolesInRings, EveryParameterCounts) {
       scan_of(many_rings(), [](double x, double y) { return pothole(x, y, 3.0, 0.1); });
   ASSERT_EQ(holes_in_scan(scan).found.size(), 1U);
   HoleParams params;
-  params.walled = 1.0;
-  params.closed = 1.01;
-  EXPECT_TRUE(holes_in_scan(scan, params).found.empty()) << "closed";
+  const RingScan at_step = scan_of(many_rings(), [](double x, double y) {
+    return pothole(x, y, 3.0, 0.1) - (y > 0.9 ? 0.08 : 0.0);
+  });
+  EXPECT_TRUE(holes_in_scan(at_step).found.empty()) << "closed";
+  params.closed = 0.3;
+  EXPECT_FALSE(holes_in_scan(at_step, params).found.empty()) << "closed";
   params = {};
   params.seen = 1.01;
   EXPECT_TRUE(holes_in_scan(scan, params).found.empty()) << "seen";
@@ -401,7 +405,7 @@ TEST(HolesInRings, ASecondTimeDoesNotAllocate) {
   const ScanView view = scan.view();
   const std::size_t before = bench::allocations();
   find_holes({used.stages.field, used.stages.grid, view.origins}, {}, used.workspace,
-             used.stages.cells, used.stages.ground, used.found);
+             used.stages.cells, used.stages.ground, used.found, used.found_cells);
   EXPECT_EQ(bench::allocations(), before);
 }
 

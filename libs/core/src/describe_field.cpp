@@ -83,8 +83,11 @@ void describe_field(const ScanView& scan, const DescriptionParams& params,
                            workspace.point_slots, workspace.field.points.height.data());
   measure_field_cells(workspace.field, description.grid, workspace.point_slots, description.field,
                       description.ground);
-  find_holes({workspace.field, description.grid, scan.origins}, params.holes, workspace.holes,
-             description.field, description.ground, description.holes);
+  const HoleInput hole_input{workspace.field, description.grid, scan.origins};
+  find_holes(hole_input, params.holes, workspace.holes, description.field, description.ground,
+             description.holes, description.hole_cells);
+  find_gaps(hole_input, description.field, params.gaps, workspace.gaps, description.ground,
+            description.holes, description.hole_cells);
   find_decks(scan, workspace.field.points, workspace.point_slots, description.grid,
              description.ground, params.decks, workspace.decks, description.field);
   find_raised_ground(scan.points, workspace.field, description.grid, description.ground,

@@ -157,13 +157,13 @@ void count_members(const Linker& linker, FieldClusterWorkspace& workspace) {
     workspace.parent[slot] = root_of(workspace.parent, static_cast<std::int32_t>(slot));
     const auto root = static_cast<std::size_t>(workspace.parent[slot]);
     ++workspace.cells_of[root];
-    workspace.above_of[root] += linker.is_hole(slot) ? 1 : cells.above[slot];
     workspace.sharp_of[root] += cells.sharp_edges[slot];
     workspace.smooth_of[root] += cells.smooth_edges[slot];
-    // The floor of a hole is ground.
-    workspace.points_of[root] += ground.rule[slot] == GroundRule::kLow
-                                     ? cells.on[slot] + cells.below[slot]
-                                     : cells.above[slot] + cells.raised[slot];
+    // The floor of a hole is ground, but never a swell.
+    const bool hole = ground.rule[slot] == GroundRule::kLow;
+    const std::int32_t own = hole ? cells.on[slot] + cells.below[slot] : cells.above[slot];
+    workspace.above_of[root] += own;
+    workspace.points_of[root] += own + (hole ? 0 : cells.raised[slot]);
   }
 }
 
@@ -176,8 +176,10 @@ void number_things(const FieldClusterParams& params, FieldClusterWorkspace& work
     const std::int32_t cells = workspace.cells_of[root];
     if (cells == 0) continue;
     const std::int32_t edges = workspace.sharp_of[root] + workspace.smooth_of[root];
-    const bool swell = 5 * workspace.above_of[root] < workspace.points_of[root] &&
-                       workspace.sharp_of[root] < params.sharp * edges;
+    // Where no edge is sharp, or none is seen, nothing tells raised ground from a swell.
+    const bool swell =
+        5 * workspace.above_of[root] < workspace.points_of[root] &&
+        (workspace.sharp_of[root] == 0 || workspace.sharp_of[root] < params.sharp * edges);
     if (swell || (cells < params.t_c && workspace.points_of[root] < params.t_points)) {
       ++result.dropped;
       continue;

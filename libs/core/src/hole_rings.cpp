@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "hole_shares.h"
 
@@ -23,6 +24,12 @@ constexpr double kSameRing = 0.1 * kDegree, kTiltedRing = 0.15;
 constexpr double kWallSteps = 2.6;
 // The other end may be oblique to the wall, metres.
 constexpr double kWidestWall = 0.3;
+// The floor begins behind the wall, which is as wide as deep: from there on, over an eighth of a
+// trace at both its ends, it lies this deep at least, over its mean depth. Few points do not tell.
+constexpr double kDeepAtEnds = 0.8;
+constexpr int kEighth = 8;
+// Walls are told from noise if rim and floor differ by so many of its standard deviations.
+constexpr double kTold = 1.8;
 // Low ground on which no part of the hole was found, over the depth.
 constexpr float kFarLow = 0.5F;
 
@@ -42,7 +49,7 @@ void put_in_order(const std::vector<HolePoint>& points, const BeamOrigins& origi
     if (!origins.is_measured(static_cast<std::size_t>(p.index))) continue;
     const auto& origin = origins.of(static_cast<std::size_t>(p.index));
     const double dx = p.x - origin[0], dy = p.y - origin[1], dz = p.z - origin[2];
-    const double range = std::hypot(dx, dy);
+    const double range = std::sqrt(dx * dx + dy * dy);
     rings.push_back({std::atan2(dy, dx), std::atan2(dz, range), static_cast<float>(range), p.depth,
                      -1, state_of(p, depth), false});
     if (p.zone != HoleZone::kFloor) continue;
@@ -106,13 +113,26 @@ struct Trace {
   int points = 0;
 };
 
+// Whether the floor is as deep at the ends of a trace as in its middle. Dips deepen gradually.
+// \param wall points on a wall
+bool is_deep_at_ends(const std::vector<float>& depths, std::ptrdiff_t wall) {
+  const auto n = static_cast<std::ptrdiff_t>(depths.size()) - 2 * wall;
+  const std::ptrdiff_t part = n / kEighth;
+  if (part <= 0) return true;
+  const auto first = depths.begin() + wall, last = depths.end() - wall;
+  const double all = std::accumulate(first, last, 0.0);
+  const double ends =
+      std::accumulate(first, first + part, 0.0) + std::accumulate(last - part, last, 0.0);
+  return ends * static_cast<double>(n) >= kDeepAtEnds * all * static_cast<double>(2 * part);
+}
+
 double width_between(const RingPoint& a, const RingPoint& b) {
   return (b.azimuth - a.azimuth) * static_cast<double>(std::min(a.range, b.range));
 }
 
 // A trace has ended on the rim, on low ground, or with the points (both null and false).
 void end_trace(const RingPoint* rim_after, bool low_after, double step, double depth, Trace& trace,
-               RingEvidence& ring) {
+               const std::vector<float>& depths, RingEvidence& ring) {
   if (trace.first == nullptr) return;
   constexpr double kNone = 1e9;
   const double before =
@@ -126,7 +146,9 @@ void end_trace(const RingPoint* rim_after, bool low_after, double step, double d
   const bool open_before = trace.rim_before == nullptr && !trace.low_before;
   const bool open_after = rim_after == nullptr && !low_after;
   const bool one = farther == kNone && open_before != open_after;
-  if (nearer <= narrow && (both || one)) {
+  const auto wall =
+      1 + static_cast<std::ptrdiff_t>(depth / (step * static_cast<double>(trace.first->range)));
+  if (nearer <= narrow && (both || one) && is_deep_at_ends(depths, wall)) {
     ++ring.traces;
     ring.walled += trace.points;
     ring.strictly += both ? trace.points : 0;
@@ -136,27 +158,31 @@ void end_trace(const RingPoint* rim_after, bool low_after, double step, double d
 }
 
 void follow(const std::vector<RingPoint>& rings, std::size_t start, double step, double depth,
-            RingEvidence& evidence) {
+            std::vector<float>& depths, RingEvidence& evidence) {
   RingEvidence ring;
   Trace trace;
   for (auto k = static_cast<std::int32_t>(start); k >= 0;
        k = rings[static_cast<std::size_t>(k)].next) {
     const RingPoint& p = rings[static_cast<std::size_t>(k)];
     if (p.state == kOnFloor) {
-      if (trace.first == nullptr) trace.first = &p;
+      if (trace.first == nullptr) {
+        trace.first = &p;
+        depths.clear();
+      }
+      depths.push_back(p.depth);
       trace.last = &p;
       ++trace.points;
     } else if (p.state == kOnRim) {
-      end_trace(&p, false, step, depth, trace, ring);
+      end_trace(&p, false, step, depth, trace, depths, ring);
       trace.rim_before = &p;
       trace.low_before = false;
     } else if (p.state == kLowElsewhere) {
-      end_trace(nullptr, true, step, depth, trace, ring);
+      end_trace(nullptr, true, step, depth, trace, depths, ring);
       trace.rim_before = nullptr;
       trace.low_before = true;
     }
   }
-  end_trace(nullptr, false, step, depth, trace, ring);
+  end_trace(nullptr, false, step, depth, trace, depths, ring);
   evidence.traces += ring.traces;
   evidence.walled += ring.walled;
   evidence.strictly += ring.strictly;
@@ -171,8 +197,10 @@ RingEvidence follow_rings(const std::vector<HolePoint>& points, const BeamOrigin
   const double step = link(workspace.rings, workspace.values);
   RingEvidence evidence;
   evidence.noise = noise_on_rim(workspace.rings, step, workspace.values);
+  if ((kFloorShare - kRimShare) * depth < kTold * evidence.noise) return evidence;
   for (std::size_t i = 0; i < workspace.rings.size(); ++i) {
-    if (!workspace.rings[i].has_before) follow(workspace.rings, i, step, depth, evidence);
+    if (!workspace.rings[i].has_before)
+      follow(workspace.rings, i, step, depth, workspace.values, evidence);
   }
   return evidence;
 }

@@ -44,6 +44,8 @@ constexpr double kSurfaceReach = 1.01;
 constexpr double kLowerAround = 0.5, kHigherAround = 0.5;
 // There is rim in a direction if so many of the cells that look out there see it...
 constexpr double kSideShare = 0.3;
+// So many looks out of a small hole may meet no rim, but cells at its walls, if two rings show it.
+constexpr double kFewOthers = 2.0;
 // ...and of the four pairs of opposite directions, so many have it on both sides: rim on one side
 // alone may be a step.
 constexpr int kFewestOpposite = 2;
@@ -190,9 +192,10 @@ struct HoleCase {
   HoleWorkspace& workspace;
   RimSurface rim;
   double depth = 0.0;
-  unsigned sides = 0;   // bit per direction (row by row): rim is seen there
-  double closed = 0.0;  // share of rim in what is seen around
-  double seen = 0.0;    // share of what is seen around
+  unsigned sides = 0;          // bit per direction (row by row): rim is seen there
+  int others = 0, around = 0;  // looks that meet no rim, and all that meet something
+  double closed = 0.0;         // share of rim in what is seen around
+  double seen = 0.0;           // share of what is seen around
 
   [[nodiscard]] const ElevationGrid& grid() const { return input.grid; }
   [[nodiscard]] CellBox box() const {
@@ -423,6 +426,8 @@ void look_around(HoleCase& hole) {
     all_unseen += unseen;
   }
   const int seen = all_rim + all_other;
+  hole.others = all_other;
+  hole.around = seen;
   hole.closed = static_cast<double>(all_rim) / std::max(seen, 1);
   hole.seen = static_cast<double>(seen) / std::max(seen + all_unseen, 1);
 }
@@ -506,6 +511,15 @@ HoleDescription describe_hole(const HoleCase& hole, const HoleCounts& counts,
   return result;
 }
 
+// Slots are sorted by the cells' numbers.
+void add_cells(const ElevationGrid& grid, std::vector<std::int32_t>& members,
+               IndexRows& hole_cells) {
+  std::sort(members.begin(), members.end());
+  for (const std::int32_t member : members)
+    hole_cells.items.push_back(value_of(grid.cell[static_cast<std::size_t>(member)]));
+  hole_cells.first.push_back(static_cast<std::int32_t>(hole_cells.items.size()));
+}
+
 bool is_hole(HoleCase& hole, HoleDescription& description) {
   if (is_too_wide(hole)) return false;
   mark_zones(hole);
@@ -517,10 +531,12 @@ bool is_hole(HoleCase& hole, HoleDescription& description) {
   const HoleCounts counts = count_points(hole);
   if (counts.floor < hole.params.least_points) return false;
   look_around(hole);
-  if (hole.closed < hole.params.closed || hole.seen < hole.params.seen) return false;
-  if (opposite_sides(hole.sides) < kFewestOpposite) return false;
+  const double most_others = (1.0 - hole.params.closed) * hole.around;
+  if (hole.others > std::max(kFewOthers, most_others)) return false;
+  if (hole.seen < hole.params.seen || opposite_sides(hole.sides) < kFewestOpposite) return false;
   RingEvidence rings;
   if (!has_walls(hole, counts, rings)) return false;
+  if (rings.rings < 2 && hole.others > most_others) return false;
   description = describe_hole(hole, counts, rings);
   return true;
 }
@@ -528,9 +544,11 @@ bool is_hole(HoleCase& hole, HoleDescription& description) {
 }  // namespace
 
 void find_holes(const HoleInput& input, const HoleParams& params, HoleWorkspace& workspace,
-                FieldCells& cells, GroundSegmentation& ground,
-                std::vector<HoleDescription>& holes) {
+                FieldCells& cells, GroundSegmentation& ground, std::vector<HoleDescription>& holes,
+                IndexRows& hole_cells) {
   holes.clear();
+  hole_cells.first.assign(1, 0);
+  hole_cells.items.clear();
   take_back_stray_cells(input, params.least_points, cells, workspace, ground);
   measure_rim(input.field, workspace);
   mark_candidates(input, params, workspace, cells);
@@ -547,6 +565,7 @@ void find_holes(const HoleInput& input, const HoleParams& params, HoleWorkspace&
       ground.rule[static_cast<std::size_t>(member)] = GroundRule::kLow;
       workspace.candidate[static_cast<std::size_t>(member)] = 0;
     }
+    add_cells(input.grid, workspace.members, hole_cells);
   }
 }
 

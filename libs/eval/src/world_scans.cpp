@@ -242,6 +242,8 @@ void take_scan(const DrivenWorld& world, std::size_t sweep_number, const ScanOpt
   const Eigen::Isometry3d T_map_frame = frame_of(world.motion.at(start), options);
   scan.truth.clear_points();
   scan.truth.things = world.things;
+  scan.truth.ground_low = world.world.min_corner;
+  scan.truth.ground_high = world.world.max_corner;
   scan.truth.T_map_given = T_map_frame * disturbance(options).inverse();
   scan.truth.range_sigma = world.sensor.model.noise.range_sigma;
   scan.truth.range_growth = world.sensor.model.noise.range_growth;

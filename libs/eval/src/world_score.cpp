@@ -136,6 +136,13 @@ ClusterMatching add_description(const JudgedDescription& judged, const ScoreRule
     wrong.sweep = sweep;
     score.potholes.wrong.push_back(std::move(wrong));
   }
+  GapScore gaps = judge_gaps(description, scan.truth, T_map_description, rules.gaps);
+  for (FalseGap& wrong : gaps.wrong) {
+    wrong.family = world.family;
+    wrong.seed = world.seed;
+    wrong.sweep = sweep;
+  }
+  score.gaps.add(gaps);
   return matching;
 }
 
@@ -148,6 +155,7 @@ void WorldScore::add(const WorldScore& other) {
   clusters.add(other.clusters);
   slopes.add(other.slopes);
   potholes.add(other.potholes);
+  gaps.add(other.gaps);
   identities.add(other.identities);
   costs.add(other.costs);
   things.insert(things.end(), other.things.begin(), other.things.end());

@@ -15,6 +15,7 @@
 #include "mrpt_terrain/core/field_cells.h"
 #include "mrpt_terrain/core/field_clusters.h"
 #include "mrpt_terrain/core/ground.h"
+#include "mrpt_terrain/core/ground_gaps.h"
 #include "mrpt_terrain/core/ground_labels.h"
 #include "mrpt_terrain/core/ground_surface.h"
 #include "mrpt_terrain/core/height_index.h"
@@ -59,6 +60,7 @@ struct DescriptionParams {
   GroundSurfaceParams ground_surface;
   GroundLabelParams ground_labels;
   HoleParams holes;
+  GapParams gaps;
   DeckParams decks;
   RaisedGroundParams raised_ground;
   OverhangParams overhangs;
@@ -77,6 +79,7 @@ struct DescriptionParams {
     visit(self.ground_surface, "ground_surface", "Field mode: local ground reference");
     visit(self.ground_labels, "ground_labels", "Field mode: points of the ground and above it");
     visit(self.holes, "holes", "Field mode: potholes and ditches");
+    visit(self.gaps, "gaps", "Field mode: ditches and drops that rings miss");
     visit(self.decks, "decks", "Field mode: raised surfaces to drive on");
     visit(self.raised_ground, "raised_ground", "Field mode: ground that is part of a thing");
     visit(self.overhangs, "overhangs", "Field mode: free under what hangs");
@@ -149,6 +152,9 @@ struct Description {
   GroundSegmentation ground;
   FieldCells field;  ///< field mode: the cells against the ground reference; empty in paper mode
   std::vector<HoleDescription> holes;  ///< field mode: holes in the ground, with or without cluster
+  /// Field mode: a row per hole: its cells, `CellId` numbers, ascending, observed or not. Nothing
+  /// may be driven on there.
+  IndexRows hole_cells;
   Clusters clusters;
   std::vector<ClusterDescription> things;  ///< one per cluster, same numbers
   CellLabels cells;                        ///< one per slot of the grid
@@ -174,6 +180,7 @@ struct DescriptionWorkspace {
   GroundWorkspace ground;
   FieldWorkspace field;
   HoleWorkspace holes;
+  GapWorkspace gaps;
   DeckWorkspace decks;
   RaisedGroundWorkspace raised_ground;
   FieldClusterWorkspace field_clusters;

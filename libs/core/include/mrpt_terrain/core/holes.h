@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mrpt_terrain/core/beam_plane.h"
+#include "mrpt_terrain/core/clusters.h"
 #include "mrpt_terrain/core/field_cells.h"
 #include "mrpt_terrain/core/grid_geometry.h"
 #include "mrpt_terrain/core/param_info.h"
@@ -57,18 +58,35 @@ struct HoleParams {
   }
 };
 
+/// How a hole shows itself.
+enum class HoleKind : std::uint8_t {
+  kFloor = 0,  ///< its floor is seen between walls
+  kGap,        ///< ditch: rings come down farther and lower than the ground before goes on, and
+               ///< behind it goes on
+  kDrop,       ///< the ground ends: what is behind is lower, or nothing comes back
+  kFreeSpace,  ///< beams have passed below the ground
+};
+constexpr EnumNames<HoleKind, 4> enum_names(HoleKind) {
+  return {{{HoleKind::kFloor, "floor"},
+           {HoleKind::kGap, "gap"},
+           {HoleKind::kDrop, "drop"},
+           {HoleKind::kFreeSpace, "free_space"}}};
+}
+
 /// A hole as it was found. Metres, frame of the scan.
 struct HoleDescription {
-  Position2 centre;     ///< mean of its floor's points
+  Position2 centre;     ///< mean of its floor's points; of other kinds: of what is missing
   double length = 0.0;  ///< along its longer axis; of a rectangle with the cells' moments
-  double width = 0.0;   ///< across
-  double depth = 0.0;   ///< below the rim, a lower bound: what was seen of the floor
+  double width = 0.0;   ///< across: of a drop, how far the ground is known to be missing
+  double depth = 0.0;   ///< below the rim, a lower bound: what was seen of it; 0: nothing
   /// 0 to 1: product of the shares of the surroundings that are seen, and of these that are rim, of
-  /// the floor's points between walls, and of the depth that the rim's spread is not.
+  /// the floor's points between walls, and of the depth that the rim's spread is not. Of other
+  /// kinds: doc/field-mode.md.
   double confidence = 0.0;
   std::int32_t points = 0;  ///< on the floor
   std::int32_t rings = 0;   ///< that show the floor between two walls; 0: origins unknown
-  std::int32_t slot = -1;   ///< one of its cells
+  std::int32_t slot = -1;   ///< one of its cells; -1: none was observed
+  HoleKind kind = HoleKind::kFloor;
 };
 
 /// Mean height of the ground about a cell of the rim's level.
@@ -163,7 +181,9 @@ struct HoleInput {
 /// \param[in,out] cells `rim` is filled in
 /// \param[in,out] ground cells of holes become `GroundRule::kLow`
 /// \param[out] holes one entry per hole, in the order of their first cells
+/// \param[out] hole_cells a row per hole: its cells, `CellId` numbers, ascending
 void find_holes(const HoleInput& input, const HoleParams& params, HoleWorkspace& workspace,
-                FieldCells& cells, GroundSegmentation& ground, std::vector<HoleDescription>& holes);
+                FieldCells& cells, GroundSegmentation& ground, std::vector<HoleDescription>& holes,
+                IndexRows& hole_cells);
 
 }  // namespace mrpt_terrain

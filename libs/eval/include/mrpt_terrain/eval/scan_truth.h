@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,9 @@ struct ScanTruth {
   /// Frame in which the description was told the points; it differs from the robot's if a test
   /// disturbs the pose.
   Eigen::Isometry3d T_map_given = Eigen::Isometry3d::Identity();
+  /// Corners of the ground, map frame, metres: beyond, there is nothing.
+  Eigen::Vector2d ground_low = Eigen::Vector2d::Constant(-std::numeric_limits<double>::infinity());
+  Eigen::Vector2d ground_high = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   double range_sigma = 0.0;   ///< standard deviation of a range at 0 m, metres
   double range_growth = 0.0;  ///< its growth per metre of range
 

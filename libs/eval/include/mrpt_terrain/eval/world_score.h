@@ -8,6 +8,7 @@
 #include "mrpt_terrain/core/thing_tracker.h"
 #include "mrpt_terrain/eval/cluster_score.h"
 #include "mrpt_terrain/eval/cost_score.h"
+#include "mrpt_terrain/eval/gap_score.h"
 #include "mrpt_terrain/eval/identity_score.h"
 #include "mrpt_terrain/eval/pothole_score.h"
 #include "mrpt_terrain/eval/slope_score.h"
@@ -25,6 +26,7 @@ struct WorldScore {
   ClusterScore clusters;
   SlopeScore slopes;
   PotholeScore potholes;
+  GapScore gaps;
   IdentityScore identities;         ///< if `WorldTask::follow`
   std::vector<ThingRecord> things;  ///< if `WorldTask::list_things`
   CostScore costs;                  ///< if `WorldTask::costs`
@@ -34,6 +36,7 @@ struct WorldScore {
 struct ScoreRules {
   ClusterRules clusters;
   PotholeRules potholes;
+  GapRules gaps;
   ApproachRules approach;
   CostRules costs;
 };
