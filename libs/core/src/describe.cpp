@@ -14,6 +14,7 @@ void describe(const ScanView& scan, const DescriptionParams& params,
   }
   description.field = FieldCells{};
   description.holes.clear();
+  clear_rows(description.hole_cells);
   description.projection = build_elevation_grid(scan.points, params.grid, workspace.grid,
                                                 description.grid, workspace.point_slots);
   describe_cells({scan, params, listener}, workspace, description);

@@ -173,6 +173,7 @@ void describe_fused(const FusedSnapshot& map, const CurrentScan& current,
   }
   description.field = FieldCells{};
   description.holes.clear();
+  clear_rows(description.hole_cells);
   read_window(map, result.frame, params.fusion, description.grid, result.cells);
   const PointsView points = workspace.points.view();
   description.projection = find_slots(points, static_cast<float>(extent.max_height),

@@ -96,8 +96,7 @@ void find_free_space_holes(const FreeSpaceGrid& free, const GroundSurface& groun
                            IndexRows& hole_cells) {
   const MapGround map_ground{ground, T_map_scan};
   holes.clear();
-  hole_cells.first.assign(1, 0);
-  hole_cells.items.clear();
+  clear_rows(hole_cells);
   workspace.depth.assign(free.size(), 0.0F);
   workspace.taken.assign(free.size(), 0);
   const double least = params.least_depth + free.lattice.layer_height();

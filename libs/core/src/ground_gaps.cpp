@@ -73,7 +73,8 @@ struct Origin {
 };
 
 Origin origin_of(const HoleInput& input) {
-  const std::size_t n = input.field.points.support.size();
+  // Of the points of many scans, the last one's come first.
+  const std::size_t n = std::min(input.field.points.support.size(), input.origins.measured);
   if (!input.origins.known() || n == 0) return {0.0F, 0.0F, kAssumedHeight};
   const auto& origin = input.origins.of(n / 2);
   return {origin[0], origin[1], origin[2]};

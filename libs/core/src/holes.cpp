@@ -547,8 +547,7 @@ void find_holes(const HoleInput& input, const HoleParams& params, HoleWorkspace&
                 FieldCells& cells, GroundSegmentation& ground, std::vector<HoleDescription>& holes,
                 IndexRows& hole_cells) {
   holes.clear();
-  hole_cells.first.assign(1, 0);
-  hole_cells.items.clear();
+  clear_rows(hole_cells);
   take_back_stray_cells(input, params.least_points, cells, workspace, ground);
   measure_rim(input.field, workspace);
   mark_candidates(input, params, workspace, cells);

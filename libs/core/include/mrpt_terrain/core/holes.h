@@ -58,6 +58,12 @@ struct HoleParams {
   }
 };
 
+/// Leaves no rows, and keeps the memory.
+inline void clear_rows(IndexRows& rows) {
+  rows.first.assign(1, 0);
+  rows.items.clear();
+}
+
 /// How a hole shows itself.
 enum class HoleKind : std::uint8_t {
   kFloor = 0,  ///< its floor is seen between walls
