@@ -193,6 +193,31 @@ TEST(FieldCosts, HolesAreLethalForSmallWheelsOnly) {
   EXPECT_EQ(large.lethal_in(kPatch), 0);
 }
 
+// Where the patch ends, nothing is seen: its cells have no slots.
+TEST(FieldCosts, MissingGroundBehindAnEdgeIsLethal) {
+  const World world = with_hole(0.1);
+  const Description& description = world.description;
+  const GridGeometry& geometry = description.grid.geometry;
+  std::size_t missing = 0;
+  for (std::size_t k = 0; k < description.holes.size(); ++k) {
+    if (description.holes[k].kind != HoleKind::kDrop) continue;
+    for (const std::int32_t cell : description.hole_cells.row(k)) {
+      const CellIndex index = geometry.index_of(CellId{cell});
+      if (description.grid.slot_at(index) != kUnobserved) continue;
+      const Position2 centre = geometry.centre_of(index);
+      const Cost cost = world.at(centre.x, centre.y);
+      ASSERT_EQ(cost.status, CostStatus::kLethal) << centre.x << " " << centre.y;
+      EXPECT_EQ(cost.parts.pothole, 1.0);
+      ++missing;
+    }
+  }
+  EXPECT_GT(missing, 50U);
+  RobotParams brave;
+  brave.least_confidence = 1.0;
+  EXPECT_TRUE(World(worlds::patch_with_hole(kPatch, {2.0, 2.6, 1.0, 1.6}, 0.1), brave)
+                  .costs.missing.empty());
+}
+
 // A wheel let down in small steps until it touches one of the edges or the floor.
 double drop_by_force(double depth, double extent, double radius) {
   double drop = 0.0;

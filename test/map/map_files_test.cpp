@@ -66,7 +66,7 @@ TEST(MapFiles, FieldModeWritesEveryPartOfTheCosts) {
               std::string::npos);
   }
   EXPECT_GT(content_of(prefix + "_cost_layers.png").size(), 1000U);
-  EXPECT_EQ(content_of(prefix + "_holes.csv").substr(0, 12), "hole,cluster");
+  EXPECT_EQ(content_of(prefix + "_holes.csv").substr(0, 17), "hole,kind,cluster");
 
   // What the snapshot says of a place agrees with what it holds.
   const TerrainSnapshotPtr now = map.snapshot();

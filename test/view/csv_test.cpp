@@ -250,6 +250,7 @@ TEST(HolesCsv, ALinePerHole) {
   hole.slot = 0;
   description.holes = {hole, hole};
   description.holes[1].slot = -1;
+  description.holes[1].kind = HoleKind::kDrop;
   ScanRecord scan;
   scan.index = 4;
   scan.stamp = 0.5;
@@ -257,9 +258,9 @@ TEST(HolesCsv, ALinePerHole) {
   write_holes_csv_header(out);
   write_holes_csv(out, scan, description);
   EXPECT_EQ(out.str(),
-            "scan,stamp,hole,cluster,x,y,length,width,depth,points,rings,confidence\n"
-            "4,0.5,0,3,1.5,-2,0.5,0.25,0.125,12,2,0.75\n"
-            "4,0.5,1,,1.5,-2,0.5,0.25,0.125,12,2,0.75\n");
+            "scan,stamp,hole,kind,cluster,x,y,length,width,depth,points,rings,confidence\n"
+            "4,0.5,0,floor,3,1.5,-2,0.5,0.25,0.125,12,2,0.75\n"
+            "4,0.5,1,drop,,1.5,-2,0.5,0.25,0.125,12,2,0.75\n");
 }
 
 }  // namespace

@@ -575,11 +575,23 @@ Cost outside() {
   return cost;
 }
 
+bool is_missing(const CellCosts& costs, CellId cell) {
+  return std::binary_search(costs.missing.begin(), costs.missing.end(), value_of(cell));
+}
+
+Cost no_ground() {
+  Cost cost;
+  cost.status = CostStatus::kLethal;
+  cost.cost = cost.parts.pothole = 1.0;
+  return cost;
+}
+
 // Calls `cost` with the slot of a cell that has one.
 template <class CostOfSlot>
 Cost cost_in(const ElevationGrid& grid, const CellCosts& costs, CellIndex cell,
              const RobotParams& robot, CostOfSlot&& cost) {
   const Slot slot = grid.slot_at(cell);
+  if (slot == kUnobserved && is_missing(costs, grid.geometry.id_of(cell))) return no_ground();
   if (slot != kUnobserved || costs.unseen.empty()) return cost(slot);
   return cost_of_unseen(costs.unseen[static_cast<std::size_t>(value_of(grid.geometry.id_of(cell)))],
                         robot);
@@ -675,6 +687,7 @@ void clear_field_parts(CellCosts& costs) {
   costs.doubt.clear();
   costs.ground.clear();
   costs.holes.clear();
+  costs.missing.clear();
   costs.unseen.clear();
 }
 

@@ -118,6 +118,30 @@ void find_hole_cells(const Description& description, std::vector<std::int32_t>& 
   }
 }
 
+// Whether a wheel must not go where the floor of a hole was not seen. The depth of a ditch is a
+// lower bound; where the ground ends, there is none.
+bool is_lethal(const HoleDescription& hole, const RobotParams& robot) {
+  if (hole.confidence < robot.least_confidence || hole.kind == HoleKind::kFloor) return false;
+  if (hole.kind == HoleKind::kDrop) return true;
+  const double across = std::min(hole.length, hole.width);
+  return wheel_drop(hole.depth, across, robot.wheel_radius) >= robot.max_step;
+}
+
+void find_missing_ground(const Description& description, const RobotParams& robot,
+                         CellCosts& costs) {
+  costs.missing.clear();
+  for (std::size_t k = 0; k < description.holes.size(); ++k) {
+    if (!is_lethal(description.holes[k], robot)) continue;
+    for (const std::int32_t cell : description.hole_cells.row(k)) {
+      const Slot slot = description.grid.slot_of[static_cast<std::size_t>(cell)];
+      if (slot == kUnobserved) costs.missing.push_back(cell);
+    }
+  }
+  std::sort(costs.missing.begin(), costs.missing.end());
+  costs.missing.erase(std::unique(costs.missing.begin(), costs.missing.end()),
+                      costs.missing.end());
+}
+
 // The points of cells that have no others, and an empty set for the rest.
 void copy_pure_cells(const Description& description, const CellCosts& costs, DrivableCells& cells) {
   const ElevationGrid& grid = description.grid;
@@ -329,6 +353,7 @@ void compute_cell_costs(const Description& description, const DescribedPoints& s
   const Input in{description, scan, static_cast<float>(robot.height + robot.overhead_reserve)};
   DrivableCells& cells = workspace.drivable;
   find_hole_cells(description, cells.hole_of, costs);
+  find_missing_ground(description, robot, costs);
   copy_pure_cells(description, costs, cells);
   costs.obstacle.assign(size, 0.0F);
   if (scan.slots != nullptr && scan.points.size > 0) {

@@ -129,7 +129,7 @@ void save_layers(const TerrainSnapshot& snapshot, const std::string& prefix) {
 }
 
 void save_holes(const TerrainSnapshot& snapshot, const std::string& file) {
-  std::string csv = "hole,cluster,x,y,z,length,width,depth,points,rings,confidence\n";
+  std::string csv = "hole,kind,cluster,x,y,z,length,width,depth,points,rings,confidence\n";
   const Description& description = snapshot.description;
   for (std::size_t k = 0; k < description.holes.size(); ++k) {
     const HoleDescription& hole = description.holes[k];
@@ -140,7 +140,8 @@ void save_holes(const TerrainSnapshot& snapshot, const std::string& file) {
             : static_cast<double>(description.grid.h_mean[static_cast<std::size_t>(hole.slot)]);
     const Eigen::Vector3d at =
         snapshot.T_map_window * Eigen::Vector3d(hole.centre.x, hole.centre.y, z);
-    csv += std::to_string(k) + "," + (cluster == kNoCluster ? "" : std::to_string(cluster));
+    csv += std::to_string(k) + "," + std::string(name_of(hole.kind)) + ",";
+    csv += cluster == kNoCluster ? "" : std::to_string(cluster);
     for (const double value :
          {at.x(), at.y(), at.z(), hole.length, hole.width, hole.depth,
           static_cast<double>(hole.points), static_cast<double>(hole.rings), hole.confidence}) {

@@ -139,7 +139,7 @@ void write_clusters_csv(std::ostream& out, const ScanRecord& scan, const Descrip
 
 void write_holes_csv_header(std::ostream& out) {
   constexpr std::string_view kHeader =
-      "scan,stamp,hole,cluster,x,y,length,width,depth,points,rings,confidence\n";
+      "scan,stamp,hole,kind,cluster,x,y,length,width,depth,points,rings,confidence\n";
   out.write(kHeader.data(), static_cast<std::streamsize>(kHeader.size()));
 }
 
@@ -148,7 +148,7 @@ void write_holes_csv(std::ostream& out, const ScanRecord& scan, const Descriptio
     const HoleDescription& hole = description.holes[k];
     const std::int32_t cluster = cluster_of(description, hole);
     Line line(out);
-    line.count(scan.index).number(scan.stamp).count(k);
+    line.count(scan.index).number(scan.stamp).count(k).text(std::string(name_of(hole.kind)));
     line.text(cluster == kNoCluster ? std::string() : std::to_string(cluster));
     line.number(hole.centre.x).number(hole.centre.y).number(hole.length).number(hole.width);
     line.number(hole.depth).count(hole.points).count(hole.rings).number(hole.confidence).end();

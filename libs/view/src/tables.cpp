@@ -64,6 +64,7 @@ std::vector<std::string> hole_row(const Description& description, std::size_t nu
   const HoleDescription& hole = description.holes[number];
   const std::int32_t cluster = cluster_of(description, hole);
   return {"h" + std::to_string(number),
+          std::string(name_of(hole.kind)),
           cluster == kNoCluster ? "-" : std::to_string(cluster),
           fixed(hole.centre.x, 2),
           fixed(hole.centre.y, 2),
@@ -89,7 +90,7 @@ std::string line_of(const Row& row, const std::array<std::size_t, kColumns>& wid
 std::string hole_table(const Description& description, std::size_t limit) {
   if (description.holes.empty()) return {};
   const std::size_t shown = std::min(limit, description.holes.size());
-  std::vector<std::vector<std::string>> rows{{"hole", "cluster", "x [m]", "y [m]", "size [m]",
+  std::vector<std::vector<std::string>> rows{{"hole", "kind", "cluster", "x [m]", "y [m]", "size [m]",
                                               "depth [cm]", "points", "rings", "confidence"}};
   for (std::size_t k = 0; k < shown; ++k) rows.push_back(hole_row(description, k));
   std::vector<std::size_t> widths(rows.front().size(), 0);

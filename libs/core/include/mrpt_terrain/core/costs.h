@@ -150,6 +150,8 @@ struct CellCosts {
   std::vector<float> doubt;          ///< two standard errors of the ground's height, metres, >= 0
   std::vector<UnseenReason> ground;  ///< kSeen, or why the ground in the cell was not
   std::vector<HoleExtent> holes;
+  /// Unobserved cells of ditches and drops, ascending numbers (`CellId`): lethal.
+  std::vector<std::int32_t> missing;
   /// Per `CellId`: why nothing is known of its ground (`explain_unseen_cells`). Empty: not told.
   std::vector<UnseenReason> unseen;
 
