@@ -3,6 +3,8 @@
 
 #include <benchmark/benchmark.h>
 
+#include <array>
+
 #include "allocation_counter.h"
 #include "mrpt_terrain/core/describe.h"
 #include "reference_loop.h"
@@ -25,6 +27,21 @@ struct Described {
   Description description;
   Described() { describe(points(), params, workspace, description); }
   [[nodiscard]] static PointsView points() { return benchmark_scan().points.view(); }
+};
+
+/// The benchmark scan in field mode, with the sensor of the data set over the robot's origin.
+struct FieldDescribed {
+  DescriptionParams params = benchmark_params();
+  DescriptionWorkspace workspace;
+  Description description;
+  std::array<float, 3> origin{0.0F, 0.0F, 1.73F};
+  ScanView scan{Described::points(), {&origin, nullptr}};
+  FieldDescribed() {
+    params.description.mode = DescriptionMode::kField;
+    params.grid.max_height = 3.0;
+    params.slope.method = SlopeMethod::kBeam;
+    describe(scan, params, workspace, description);
+  }
 };
 
 /// Runs `work` as the benchmark's loop after two rounds that may still allocate, and counts the

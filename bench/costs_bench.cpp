@@ -54,21 +54,6 @@ void cell_costs(benchmark::State& state) {
 }
 BENCHMARK(cell_costs)->Unit(benchmark::kMicrosecond)->Arg(20)->Arg(10)->Arg(5);
 
-/// The benchmark scan in field mode, with the sensor of the data set over the robot's origin.
-struct FieldDescribed {
-  DescriptionParams params = benchmark_params();
-  DescriptionWorkspace workspace;
-  Description description;
-  std::array<float, 3> origin{0.0F, 0.0F, 1.73F};
-  ScanView scan{Described::points(), {&origin, nullptr}};
-  FieldDescribed() {
-    params.description.mode = DescriptionMode::kField;
-    params.grid.max_height = 3.0;
-    params.slope.method = SlopeMethod::kBeam;
-    describe(scan, params, workspace, description);
-  }
-};
-
 // Of the benchmark scan as field mode describes it.
 void field_cell_costs(benchmark::State& state) {
   FieldDescribed d;

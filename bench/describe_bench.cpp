@@ -55,6 +55,30 @@ void description_by_stage(benchmark::State& state) {
 }
 BENCHMARK(description_by_stage)->Unit(benchmark::kMicrosecond);
 
+// Field mode: the ground reference and the labels of the points, as label_by_height gives them.
+void field_ground_and_labels(benchmark::State& state) {
+  FieldDescribed d;
+  FieldWorkspace field;
+  run_counted(state, [&] {
+    find_field_ground(Described::points(), d.params.ground_surface, d.params.ground_labels, field);
+  });
+  std::size_t ground = 0;
+  for (const Support support : field.points.support)
+    ground += support == Support::kGround ? 1U : 0U;
+  if (2 * ground < Described::points().size) state.SkipWithError("less than half is ground");
+  state.counters["points"] = static_cast<double>(Described::points().size);
+}
+BENCHMARK(field_ground_and_labels)->Unit(benchmark::kMicrosecond);
+
+// All stages and labels.
+void field_description(benchmark::State& state) {
+  FieldDescribed d;
+  run_counted(state, [&] { describe(d.scan, d.params, d.workspace, d.description); });
+  if (d.description.things.empty()) state.SkipWithError("no thing was found");
+  state.counters["clusters"] = static_cast<double>(d.description.things.size());
+}
+BENCHMARK(field_description)->Unit(benchmark::kMicrosecond);
+
 }  // namespace
 }  // namespace mrpt_terrain::bench
 

@@ -62,7 +62,7 @@ classes_of() {
   shift 2
   say "$name: $*"
   "$program" process "$input" "$@" --output-dir "$work/$name"
-  convert "$work/$name/scan_000000.png" -gravity NorthEast -crop 756x780+0+74 +repage "$work/$name.png"
+  convert "$work/$name/scan_000000.png" -gravity NorthEast -crop 744x780+0+74 +repage "$work/$name.png"
 }
 
 # modes NAME FAMILY SEED: the first scan of a simulated world in paper mode, on the left, and in

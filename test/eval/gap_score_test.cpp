@@ -36,7 +36,9 @@ struct Case {
     description.hole_cells.first.push_back(
         static_cast<std::int32_t>(description.hole_cells.items.size()));
   }
-  [[nodiscard]] GapScore score() const { return judge_gaps(description, truth, truth.T_map_given, GapRules{}); }
+  [[nodiscard]] GapScore score() const {
+    return judge_gaps(description, truth, truth.T_map_given, GapRules{});
+  }
 };
 
 TEST(GapScore, RightAtAHoleAndAtTheEdgeOfTheGround) {

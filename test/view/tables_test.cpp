@@ -83,10 +83,11 @@ TEST(HoleTable, HolesWithTheirClusters) {
   description.holes = {hole, hole};
   description.holes[1].slot = 0;
   description.holes[1].kind = HoleKind::kGap;
-  EXPECT_EQ(hole_table(description),
-            "hole   kind  cluster  x [m]  y [m]     size [m]  depth [cm]  points  rings  confidence\n"
-            "  h0  floor        7   4.25  -1.00  0.61 x 0.40         8.3      31      4        0.46\n"
-            "  h1    gap        -   4.25  -1.00  0.61 x 0.40         8.3      31      4        0.46\n");
+  EXPECT_EQ(
+      hole_table(description),
+      "hole   kind  cluster  x [m]  y [m]     size [m]  depth [cm]  points  rings  confidence\n"
+      "  h0  floor        7   4.25  -1.00  0.61 x 0.40         8.3      31      4        0.46\n"
+      "  h1    gap        -   4.25  -1.00  0.61 x 0.40         8.3      31      4        0.46\n");
   EXPECT_NE(hole_table(description, 1).find("... and 1 more\n"), std::string::npos);
 }
 

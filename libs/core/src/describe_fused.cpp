@@ -73,7 +73,6 @@ ProjectionCounts find_slots(const PointsView& points, float max_height, const El
   return counts;
 }
 
-
 // Labels and counts are those of the scan's own points, which come first.
 void keep_labels(std::size_t measured, const PointSlots& point_slots, Description& description) {
   PointLabels& labels = description.labels;
@@ -116,8 +115,8 @@ void look_up_cells(const RememberedWorkspace& remembered, double time, const Ele
 }
 
 // Readers of the grid get all that the map knows of a cell instead of the few points that stood for
-// it, but where it knows of heights that do not belong to the cell: too high above the ground there,
-// or hanging over it.
+// it, but where it knows of heights that do not belong to the cell: too high above the ground
+// there, or hanging over it.
 void take_over_cells(const RememberedWorkspace& remembered, float max_height,
                      Description& description) {
   ElevationGrid& grid = description.grid;

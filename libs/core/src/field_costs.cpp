@@ -138,8 +138,7 @@ void find_missing_ground(const Description& description, const RobotParams& robo
     }
   }
   std::sort(costs.missing.begin(), costs.missing.end());
-  costs.missing.erase(std::unique(costs.missing.begin(), costs.missing.end()),
-                      costs.missing.end());
+  costs.missing.erase(std::unique(costs.missing.begin(), costs.missing.end()), costs.missing.end());
 }
 
 // The points of cells that have no others, and an empty set for the rest.

@@ -119,10 +119,10 @@ IndexRange points_for_slope(const StageInput& stage, DescriptionWorkspace& works
                             const Description& description, std::size_t k) {
   const IndexRange all = workspace.points_of.row(k);
   const std::size_t measured = stage.scan.origins.measured;
-  const auto end = std::lower_bound(all.begin(), all.end(), measured,
-                                    [](std::int32_t point, std::size_t first) {
-                                      return static_cast<std::size_t>(point) < first;
-                                    });
+  const auto end =
+      std::lower_bound(all.begin(), all.end(), measured, [](std::int32_t point, std::size_t first) {
+        return static_cast<std::size_t>(point) < first;
+      });
   if (end == all.end()) return all;
   std::int32_t cells = 0;
   for (const std::int32_t* point = all.begin(); point != end; ++point) {
@@ -207,10 +207,9 @@ void measure_thing_slopes(const StageInput& stage, DescriptionWorkspace& workspa
     ClusterDescription& thing = description.things[k];
     const bool needed = class_from_height(thing.height, classes) == TerrainClass::kNone;
     if (!needed && !classes.all_features) continue;
-    thing.slope = estimate_face_slope(stage.scan.points, stage.scan.origins,
-                                      points_for_slope(stage, workspace, description, k),
-                                      stage.params.beam_slope,
-                                      stage.params.slope.seed, k, workspace.face_slope);
+    thing.slope = estimate_face_slope(
+        stage.scan.points, stage.scan.origins, points_for_slope(stage, workspace, description, k),
+        stage.params.beam_slope, stage.params.slope.seed, k, workspace.face_slope);
     if (thing.slope.status != FeatureStatus::kOk) continue;
     const GroundAround* around =
         ground_around(description.grid.geometry, stage.params.raised_ground,

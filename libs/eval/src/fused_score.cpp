@@ -36,8 +36,7 @@ void count(Support truth, Support described, SupportCounts& counts) {
 
 void score_cells(const DrivenWorld& world, const MapDescription& single, const MapDescription& map,
                  double reach, FusedScore& score) {
-  const GridGeometry geometry(2.0 * reach, 2.0 * reach,
-                              map.description->grid.geometry.cell_size());
+  const GridGeometry geometry(2.0 * reach, 2.0 * reach, map.description->grid.geometry.cell_size());
   const sim::CellTruth truth = sim::truth_of_cells(*world.caster, map.T_map_window, geometry);
   for (int l = 0; l < geometry.cells_l(); ++l) {
     for (int w = 0; w < geometry.cells_w(); ++w) {

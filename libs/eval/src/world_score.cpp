@@ -54,8 +54,8 @@ void score_scan(const WorldTask& task, const DrivenWorld& world, std::size_t swe
   task.describe(scan.view(), scratch.description);
   score.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const PointsView points = scan.points.view();
-  const ClusterMatching matching = add_description(
-      {world, sweep, scan, description, scan.truth.T_map_given}, task.rules, score);
+  const ClusterMatching matching =
+      add_description({world, sweep, scan, description, scan.truth.T_map_given}, task.rules, score);
   if (task.list_things) {
     for (ThingRecord& record :
          list_things(points, scan.truth, description.labels, description.things, matching)) {
@@ -122,8 +122,8 @@ ClusterMatching add_description(const JudgedDescription& judged, const ScoreRule
   score.points += scan.points.size();
   const PointsView points = scan.points.view();
   add_support(points, scan.truth, description.labels.support, score.support);
-  ClusterMatching matching = match_clusters(points, scan.truth, description.labels,
-                                            description.things, rules.clusters);
+  ClusterMatching matching =
+      match_clusters(points, scan.truth, description.labels, description.things, rules.clusters);
   add_clusters(matching, scan.truth, description.things, score.clusters);
   add_slopes(matching, scan.truth, description.labels, description.things, score.slopes);
   const PotholePlaces potholes = places_of_potholes(description, T_map_description);

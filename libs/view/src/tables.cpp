@@ -90,8 +90,9 @@ std::string line_of(const Row& row, const std::array<std::size_t, kColumns>& wid
 std::string hole_table(const Description& description, std::size_t limit) {
   if (description.holes.empty()) return {};
   const std::size_t shown = std::min(limit, description.holes.size());
-  std::vector<std::vector<std::string>> rows{{"hole", "kind", "cluster", "x [m]", "y [m]", "size [m]",
-                                              "depth [cm]", "points", "rings", "confidence"}};
+  std::vector<std::vector<std::string>> rows{{"hole", "kind", "cluster", "x [m]", "y [m]",
+                                              "size [m]", "depth [cm]", "points", "rings",
+                                              "confidence"}};
   for (std::size_t k = 0; k < shown; ++k) rows.push_back(hole_row(description, k));
   std::vector<std::size_t> widths(rows.front().size(), 0);
   for (const auto& row : rows) {

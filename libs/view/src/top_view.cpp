@@ -103,8 +103,8 @@ std::vector<NumberLabel> make_labels(Canvas& canvas, const MapPanel& panel,
   std::vector<NumberLabel> labels;
   for (std::size_t k = 0; k < std::min(description.holes.size(), at_most); ++k) {
     const HoleDescription& hole = description.holes[k];
-    const std::string what = hole.depth > 0.0 ? fixed(100.0 * hole.depth, 0) + " cm"
-                                              : std::string(name_of(hole.kind));
+    const std::string what =
+        hole.depth > 0.0 ? fixed(100.0 * hole.depth, 0) + " cm" : std::string(name_of(hole.kind));
     const std::string text = "h" + std::to_string(k) + " " + what;
     labels.push_back(make_label(canvas, text, kPotholeColour, panel.pixel_of(hole.centre)));
   }

@@ -25,8 +25,8 @@ struct CellHits {
   float low = 0.0F, high = 0.0F;
 };
 
-/// Cells of a square that the current scan has hit: those that tell where the ground was before, and
-/// those of them where it was elsewhere.
+/// Cells of a square that the current scan has hit: those that tell where the ground was before,
+/// and those of them where it was elsewhere.
 struct ShiftCounts {
   std::int32_t told = 0, shifted = 0;
 };
