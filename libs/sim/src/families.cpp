@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "family_fields.h"
+#include "holes.h"
 #include "mrpt_terrain/core/random.h"
 #include "polygon.h"
 #include "solid_bodies.h"
@@ -76,9 +77,15 @@ Params drawn(const Span<Params>& span, RandomGenerator random) {
 }
 
 Shape drawn_shape(const Span<Shape>& span, RandomGenerator& random) {
-  Shape high = span.high;
+  // Numbers that lie in their ranges may not go together: one in thousands of long ellipses is
+  // narrower at its ends than its walls are wide, and is drawn again.
   Shape result = span.low;
-  draw_all(fields_of_shape(high), fields_of_shape(result), random);
+  for (int k = 0; k < kTries; ++k) {
+    Shape high = span.high;
+    result = span.low;
+    draw_all(fields_of_shape(high), fields_of_shape(result), random);
+    if (leaves_floor(result)) break;
+  }
   return result;
 }
 

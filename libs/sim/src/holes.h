@@ -6,6 +6,7 @@
 
 #include "mrpt_terrain/sim/ground_surface.h"
 #include "mrpt_terrain/sim/mesh.h"
+#include "mrpt_terrain/sim/scene.h"
 #include "polygon.h"
 
 namespace mrpt_terrain::sim {
@@ -18,6 +19,9 @@ struct Hole {
   double wall_angle = 0.0;  ///< from horizontal, radians
   [[nodiscard]] bool upright_walls() const { return rim == floor; }
 };
+
+/// Whether the walls of a pothole or ditch have a floor between them; true of all other shapes.
+[[nodiscard]] bool leaves_floor(const Shape& shape);
 
 /// How far the ground is lowered at (x, y), metres.
 [[nodiscard]] double lowered_by(const std::vector<Hole>& holes, double x, double y);

@@ -67,18 +67,24 @@ const HoleForm* hole_form_of(const Shape& shape, HoleForm& form) {
   return nullptr;
 }
 
+Polygon rim_of(const HoleForm& form, const Eigen::Vector2d& centre, double yaw) {
+  return form.form == RimForm::kRectangle
+             ? turned_rectangle(centre, yaw, form.length, form.width)
+             : turned_ellipse(centre, yaw, form.length, form.width, kRimCorners);
+}
+
+// How far the walls reach inwards, metres.
+double run_of(const HoleForm& form) { return form.depth / std::tan(form.wall_angle); }
+
 Hole hole_of(const Scene& scene, std::size_t k, const HoleForm& form) {
   const Placement& place = scene.solids[k].placement;
-  const Eigen::Vector2d centre(place.x, place.y);
   Hole hole;
   hole.solid = static_cast<std::int32_t>(k) + 1;
   hole.depth = form.depth;
   hole.wall_angle = form.wall_angle;
-  hole.rim = form.form == RimForm::kRectangle
-                 ? turned_rectangle(centre, place.yaw, form.length, form.width)
-                 : turned_ellipse(centre, place.yaw, form.length, form.width, kRimCorners);
+  hole.rim = rim_of(form, {place.x, place.y}, place.yaw);
   hole.floor = hole.rim;
-  const double run = form.depth / std::tan(form.wall_angle);
+  const double run = run_of(form);
   if (run < 1e-6) return hole;
   const std::optional<Polygon> floor = inset(hole.rim, run);
   if (!floor) {
@@ -160,6 +166,14 @@ World build_world(const Scene& scene) {
     }
   }
   return world;
+}
+
+bool leaves_floor(const Shape& shape) {
+  // Rounding at other places must not decide.
+  constexpr double kMargin = 1.001;
+  HoleForm form{};
+  if (hole_form_of(shape, form) == nullptr) return true;
+  return inset(rim_of(form, Eigen::Vector2d::Zero(), 0.0), kMargin * run_of(form)).has_value();
 }
 
 }  // namespace mrpt_terrain::sim
