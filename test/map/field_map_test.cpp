@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Terrain maps in field mode, with single and with fused scans.
 #include <gtest/gtest.h>
-#include <mrpt/io/CMemoryStream.h>
-#include <mrpt/serialization/CArchive.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +16,9 @@ namespace mrpt_terrain {
 namespace {
 
 using mrpt::poses::CPose3D;
+using testing::bytes_of;
 using testing::lidar_pose;
+using testing::map_from;
 using testing::observation_of;
 
 MapParams field_map(Fusion fusion) {
@@ -72,21 +72,6 @@ std::vector<std::uint64_t> identities_at(const CTerrainMap& map, const worlds::R
        map.clusters_in({{r.x0 + 0.05, r.y0 + 0.05}, {r.x1 - 0.05, r.y1 - 0.05}}))
     identities.push_back(cluster.identity);
   return identities;
-}
-
-std::string bytes_of(const CTerrainMap& map) {
-  mrpt::io::CMemoryStream stream;
-  mrpt::serialization::archiveFrom(stream) << map;
-  return {static_cast<const char*>(stream.getRawBufferData()), stream.getTotalBytesCount()};
-}
-
-CTerrainMap map_from(const std::string& bytes) {
-  mrpt::io::CMemoryStream stream;
-  stream.Write(bytes.data(), bytes.size());
-  stream.Seek(0);
-  CTerrainMap map;
-  mrpt::serialization::archiveFrom(stream) >> map;
-  return map;
 }
 
 class FieldMap : public ::testing::TestWithParam<Fusion> {};

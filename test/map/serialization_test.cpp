@@ -15,25 +15,12 @@ namespace mrpt_terrain {
 namespace {
 
 using mrpt::poses::CPose3D;
+using testing::bytes_of;
 using testing::lidar_pose;
+using testing::map_from;
 using testing::observation_of;
 using testing::scene_points;
 using testing::small_map;
-
-std::string bytes_of(const CTerrainMap& map) {
-  mrpt::io::CMemoryStream stream;
-  mrpt::serialization::archiveFrom(stream) << map;
-  return {static_cast<const char*>(stream.getRawBufferData()), stream.getTotalBytesCount()};
-}
-
-CTerrainMap map_from(const std::string& bytes) {
-  mrpt::io::CMemoryStream stream;
-  stream.Write(bytes.data(), bytes.size());
-  stream.Seek(0);
-  CTerrainMap map;
-  mrpt::serialization::archiveFrom(stream) >> map;
-  return map;
-}
 
 std::string refusal_of(const std::string& bytes) {
   try {

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <mrpt/config/CConfigFileMemory.h>
+#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/poses/CPose3D.h>
+#include <mrpt/serialization/CArchive.h>
 
 #include <cmath>
 #include <string>
@@ -55,6 +57,22 @@ inline mrpt::obs::CObservationPointCloud observation_of(
 
 /// Where the sensor of `scene_points` is.
 inline mrpt::poses::CPose3D lidar_pose() { return {0.0, 0.0, 0.81, 0.0, 0.0, 0.0}; }
+
+/// A map as MRPT stores it.
+inline std::string bytes_of(const CTerrainMap& map) {
+  mrpt::io::CMemoryStream stream;
+  mrpt::serialization::archiveFrom(stream) << map;
+  return {static_cast<const char*>(stream.getRawBufferData()), stream.getTotalBytesCount()};
+}
+
+inline CTerrainMap map_from(const std::string& bytes) {
+  mrpt::io::CMemoryStream stream;
+  stream.Write(bytes.data(), bytes.size());
+  stream.Seek(0);
+  CTerrainMap map;
+  mrpt::serialization::archiveFrom(stream) >> map;
+  return map;
+}
 
 inline mrpt::config::CConfigFileMemory config_of(const std::string& text) {
   mrpt::config::CConfigFileMemory config;

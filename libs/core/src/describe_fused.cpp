@@ -48,6 +48,12 @@ UnknownReason reason_without_cell(float x, float y, float z, float max_height) {
   return z >= max_height ? UnknownReason::kTooHigh : UnknownReason::kOutsideMap;
 }
 
+void count_left_out(UnknownReason reason, ProjectionCounts& counts) {
+  if (reason == UnknownReason::kNotFinite) ++counts.not_finite;
+  if (reason == UnknownReason::kTooHigh) ++counts.too_high;
+  if (reason == UnknownReason::kOutsideMap) ++counts.outside_map;
+}
+
 // The slots of the scan's points in the window.
 ProjectionCounts find_slots(const PointsView& points, float max_height, const ElevationGrid& grid,
                             PointSlots& point_slots) {
@@ -66,9 +72,7 @@ ProjectionCounts find_slots(const PointsView& points, float max_height, const El
     const UnknownReason reason =
         reason_without_cell(points.x[i], points.y[i], points.z[i], max_height);
     point_slots[i] = point_slot_of(reason);
-    if (reason == UnknownReason::kNotFinite) ++counts.not_finite;
-    if (reason == UnknownReason::kTooHigh) ++counts.too_high;
-    if (reason == UnknownReason::kOutsideMap) ++counts.outside_map;
+    count_left_out(reason, counts);
   }
   return counts;
 }
@@ -87,10 +91,7 @@ void keep_labels(std::size_t measured, const PointSlots& point_slots, Descriptio
       ++counts.in_map;
       continue;
     }
-    const UnknownReason reason = reason_of(point_slots[i]);
-    if (reason == UnknownReason::kNotFinite) ++counts.not_finite;
-    if (reason == UnknownReason::kTooHigh) ++counts.too_high;
-    if (reason == UnknownReason::kOutsideMap) ++counts.outside_map;
+    count_left_out(reason_of(point_slots[i]), counts);
   }
 }
 

@@ -48,10 +48,6 @@ void describe_fused_window(const io::Scan& scan, double time, FusionHalf& fusion
   snapshot.fusion = fusion.params;
 }
 
-}  // namespace
-
-namespace {
-
 void measure_costs(const io::Scan& scan, MapWriter& writer, TerrainSnapshot& snapshot) {
   const Description& description = snapshot.description;
   if (writer.fusion) {
