@@ -20,14 +20,13 @@ std::uint16_t key_of(std::int32_t voxel) {
   return static_cast<std::uint16_t>(std::clamp(voxel + 0x8000, 0, 0xFFFF));
 }
 
-/// 64 layers of a cell from one on, a bit each: whether all of their voxels are known to be free.
-std::uint64_t free_layers(const octree::FreeCells& free, MapCell cell, std::int32_t layer,
-                          int voxels) {
+/// Up to 64 layers of a cell, a bit each: whether all of their voxels are known to be free.
+std::uint64_t free_layers(const octree::FreeCells& free, MapCell cell, LayerSpan span, int voxels) {
   std::uint64_t layers = ~std::uint64_t{0};
   for (int x = 0; x < voxels; ++x) {
     for (int y = 0; y < voxels; ++y) {
-      layers &=
-          free.column(key_of(cell.i * voxels + x), key_of(cell.j * voxels + y), key_of(layer));
+      layers &= free.column(key_of(cell.i * voxels + x), key_of(cell.j * voxels + y),
+                            key_of(span.low), span.layers());
     }
   }
   return layers;
@@ -117,9 +116,8 @@ void OctreeHalf::find_free_space(const MapLattice& lattice,
   for (const ColumnRequest& column : columns) {
     bool named = false;
     for (std::int32_t low = column.layers.low; low < column.layers.high; low += 64) {
-      std::uint64_t layers = free_layers(free_, column.cell, low, voxels);
-      const std::int32_t left = column.layers.high - low;
-      if (left < 64) layers &= (std::uint64_t{1} << left) - 1;
+      const LayerSpan span{low, std::min(low + 64, column.layers.high)};
+      std::uint64_t layers = free_layers(free_, column.cell, span, voxels);
       if (layers != 0 && !named) grid.begin_cell(column.cell);
       named = named || layers != 0;
       for (; layers != 0; layers &= layers - 1) {

@@ -85,13 +85,15 @@ void FreeCells::set_within_block(CellCode code, int level, bool is_free) {
   word = is_free ? word | bits : word & ~bits;
 }
 
-std::uint64_t FreeCells::column(std::uint16_t x, std::uint16_t y, std::uint16_t z) const {
+std::uint64_t FreeCells::column(std::uint16_t x, std::uint16_t y, std::uint16_t z,
+                                int cells) const {
+  assert(cells >= 1 && cells <= 64);
   std::uint64_t bits = 0;
   std::size_t tile = kNone;
   CellCode tile_code = ~CellCode{0};
   const int below = z % 4;
   const CellCode corner = spread_bits(x) | spread_bits(y) << 1;
-  for (int layer = z - below; layer < z + 64 && layer <= 0xFFFF; layer += 4) {
+  for (int layer = z - below; layer < z + cells && layer <= 0xFFFF; layer += 4) {
     const CellCode code = corner | spread_bits(static_cast<std::uint16_t>(layer)) << 2;
     if (code >> 18 != tile_code) {
       tile_code = code >> 18;
@@ -103,7 +105,7 @@ std::uint64_t FreeCells::column(std::uint16_t x, std::uint16_t y, std::uint16_t 
     const int shift = layer - z;
     bits |= shift < 0 ? four >> -shift : four << shift;
   }
-  return bits;
+  return cells == 64 ? bits : bits & ((std::uint64_t{1} << cells) - 1);
 }
 
 void FreeCells::trim(const CellWindow& window) {

@@ -34,8 +34,10 @@ class FreeCells {
   /// in those that lie across its border.
   void trim(const CellWindow& window);
 
-  /// 64 cells above each other: bit k is cell (x, y, z + k). Those beyond the highest key are 0.
-  [[nodiscard]] std::uint64_t column(std::uint16_t x, std::uint16_t y, std::uint16_t z) const;
+  /// Cells above each other: bit k is cell (x, y, z + k). Those beyond the highest key are 0.
+  /// \param cells how many are looked at, 1 to 64; the bits of the others are 0
+  [[nodiscard]] std::uint64_t column(std::uint16_t x, std::uint16_t y, std::uint16_t z,
+                                     int cells = 64) const;
 
  private:
   struct Block {
