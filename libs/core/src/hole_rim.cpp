@@ -208,6 +208,11 @@ void take_around(const std::vector<HolePoint>& points, const RimSurface& rim, bo
   while (around.u.size() % kCellLanes != 0) around.add(0.0, 0.0, 0.0, 0.0, false);
 }
 
+bool same(const RimSurface& a, const RimSurface& b) {
+  return a.gradient_x == b.gradient_x && a.gradient_y == b.gradient_y && a.bend_xx == b.bend_xx &&
+         a.bend_xy == b.bend_xy && a.bend_yy == b.bend_yy && a.sigma == b.sigma;
+}
+
 }  // namespace
 
 bool fit_rim(const std::vector<HolePoint>& points, double low, RimPoints& scratch,
@@ -217,11 +222,15 @@ bool fit_rim(const std::vector<HolePoint>& points, double low, RimPoints& scratc
   double band = low, height = 0.0;
   for (int round = 0; round < kRounds; ++round) {
     const bool plane = round < kPlaneRounds;
+    const RimSurface before = rim;
+    const double height_before = height, band_before = band;
     PowerSums sums;
     sum_rim(scratch, rim, height, band, round == 0, sums);
     if (!(plane ? fit_round<3>(sums, rim, height) : fit_round<6>(sums, rim, height))) return false;
     rim.sigma = spread_of(scratch, rim, height, band, plane ? 3 : 6);
     band = std::clamp(kOutlier * rim.sigma, std::min(kLeastBand, low), low);
+    // The same points again: the other rounds would change nothing.
+    if (!plane && same(rim, before) && height == height_before && band == band_before) break;
   }
   rim.z += height;
   return true;

@@ -158,8 +158,8 @@ void mark_candidates(const HoleInput& input, const HoleParams& params, HoleWorks
   const auto least = static_cast<float>(params.least_depth);
   workspace.candidate.assign(grid.observed(), 0);
   workspace.zone.assign(grid.observed(), HoleZone::kFar);
-  workspace.deep.resize(grid.observed());
-  workspace.all.resize(grid.observed());
+  workspace.deep.assign(grid.observed(), 0);
+  workspace.all.assign(grid.observed(), 0);
   cells.rim.resize(grid.observed());
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
     const Position2 centre = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[slot]));
@@ -259,44 +259,57 @@ HoleWindow window_around(const HoleCase& hole) {
   return window;
 }
 
-void add_points(HoleCase& hole, const HoleWindow& window, std::size_t slot) {
+// Adds the points of a cell of the lattice that are of the rim, the walls and the floor, or else
+// those that are farther away.
+void add_points(HoleCase& hole, const HoleWindow& window, bool far, std::size_t slot) {
   const GroundSurface& surface = hole.input.field.surface;
   const ElevationGrid& grid = hole.grid();
   for (std::int32_t k = surface.cells.first[slot]; k < surface.cells.first[slot + 1]; ++k) {
     if (hole.input.field.support[static_cast<std::size_t>(k)] == Support::kAbove) continue;
     const CellPoint& p = surface.cells.points[static_cast<std::size_t>(k)];
+    const bool near = window.contains(p.x, p.y);
     CellIndex cell;
-    if (!grid.geometry.cell_at(p.x, p.y, cell)) continue;
+    if ((near && far) || !grid.geometry.cell_at(p.x, p.y, cell)) continue;
     const Slot of = grid.slot_at(cell);
     if (of == kUnobserved) continue;
     HoleZone zone = hole.workspace.zone[static_cast<std::size_t>(of)];
-    if (zone == HoleZone::kFar && window.contains(p.x, p.y)) zone = HoleZone::kRim;
+    if (zone == HoleZone::kFar && near) zone = HoleZone::kRim;
+    if ((zone == HoleZone::kFar) != far) continue;
     const float above_cell = hole.cells.rim[static_cast<std::size_t>(of)] - p.z;
     hole.workspace.points.push_back({p.x, p.y, p.z, p.index, of, 1.0F, above_cell, zone});
   }
 }
 
-// Brings the points on and below the ground in and around the members together. Their depths are
-// those below the rim of their cells.
-void collect_points(HoleCase& hole) {
+void add_points_between(HoleCase& hole, const HoleWindow& window, bool far, Position2 low,
+                        Position2 high) {
   const GroundSurface& surface = hole.input.field.surface;
   const SquareLattice& lattice = surface.lattice();
-  const HoleWindow window = window_around(hole);
   const auto index = [&lattice](double metres) {
     const int at = static_cast<int>(std::floor(metres / lattice.cell_size)) + lattice.side / 2;
     return std::clamp(at, 0, lattice.side - 1);
   };
+  for (int row = index(low.x); row <= index(high.x); ++row) {
+    for (int column = index(low.y); column <= index(high.y); ++column) {
+      const std::int32_t slot = surface.cells.slot_of[surface.cells.number_of({row, column})];
+      if (slot >= 0) add_points(hole, window, far, static_cast<std::size_t>(slot));
+    }
+  }
+}
+
+// Brings the points on and below the ground in and around the members together. Their depths are
+// those below the rim of their cells.
+void collect_points(HoleCase& hole, const HoleWindow& window) {
+  hole.workspace.points.clear();
+  add_points_between(hole, window, false, window.low, window.high);
+}
+
+// Adds those towards the sensor, which only rings need.
+void collect_points_ahead(HoleCase& hole, const HoleWindow& window) {
   const Position2 low{window.low.x + std::min(window.ahead_x, 0.0),
                       window.low.y + std::min(window.ahead_y, 0.0)};
   const Position2 high{window.high.x + std::max(window.ahead_x, 0.0),
                        window.high.y + std::max(window.ahead_y, 0.0)};
-  hole.workspace.points.clear();
-  for (int row = index(low.x); row <= index(high.x); ++row) {
-    for (int column = index(low.y); column <= index(high.y); ++column) {
-      const std::int32_t slot = surface.cells.slot_of[surface.cells.number_of({row, column})];
-      if (slot >= 0) add_points(hole, window, static_cast<std::size_t>(slot));
-    }
-  }
+  add_points_between(hole, window, true, low, high);
 }
 
 // The nearer to the hole, the more a point of the rim counts.
@@ -320,7 +333,6 @@ bool measure_depth(HoleCase& hole) {
   std::vector<float>& depths = hole.workspace.values;
   depths.clear();
   for (HolePoint& p : hole.workspace.points) {
-    if (p.zone == HoleZone::kFar) continue;
     p.depth = static_cast<float>(hole.rim.height_at(p.x, p.y)) - p.z;
     if (p.zone == HoleZone::kFloor) depths.push_back(p.depth);
   }
@@ -336,11 +348,6 @@ void grow(HoleCase& hole) {
   const ElevationGrid& grid = hole.grid();
   HoleWorkspace& workspace = hole.workspace;
   for (const HolePoint& p : workspace.points) {
-    const auto slot = static_cast<std::size_t>(p.slot);
-    workspace.deep[slot] = workspace.all[slot] = 0;
-  }
-  for (const HolePoint& p : workspace.points) {
-    if (p.zone == HoleZone::kFar) continue;
     const auto slot = static_cast<std::size_t>(p.slot);
     ++workspace.all[slot];
     if (p.depth >= 0.5 * hole.depth) ++workspace.deep[slot];
@@ -360,9 +367,9 @@ void grow(HoleCase& hole) {
   }
   mark_zones(hole);
   for (HolePoint& p : workspace.points) {
-    if (p.zone == HoleZone::kFar) continue;
-    const HoleZone zone = workspace.zone[static_cast<std::size_t>(p.slot)];
-    p.zone = zone == HoleZone::kFar ? HoleZone::kRim : zone;
+    const auto slot = static_cast<std::size_t>(p.slot);
+    workspace.deep[slot] = workspace.all[slot] = 0;
+    p.zone = workspace.zone[slot] == HoleZone::kFar ? HoleZone::kRim : workspace.zone[slot];
   }
 }
 
@@ -457,12 +464,14 @@ bool rings_tell(const HoleCase& hole, const HoleCounts& counts) {
 }
 
 // Whether the floor ends at walls, and the rim is even enough for what shows it.
-bool has_walls(const HoleCase& hole, const HoleCounts& counts, RingEvidence& rings) {
+bool has_walls(HoleCase& hole, const HoleWindow& window, const HoleCounts& counts,
+               RingEvidence& rings) {
   const HoleParams& params = hole.params;
   if (!rings_tell(hole, counts)) {
     return counts.between <= params.wall_share * counts.floor &&
            hole.rim.sigma <= params.rim_depth * hole.depth;
   }
+  collect_points_ahead(hole, window);
   rings = follow_rings(hole.workspace.points, hole.input.origins, hole.depth, hole.workspace);
   const double uneven =
       std::sqrt(std::max(0.0, hole.rim.sigma * hole.rim.sigma - rings.noise * rings.noise));
@@ -523,7 +532,8 @@ void add_cells(const ElevationGrid& grid, std::vector<std::int32_t>& members,
 bool is_hole(HoleCase& hole, HoleDescription& description) {
   if (is_too_wide(hole)) return false;
   mark_zones(hole);
-  collect_points(hole);
+  const HoleWindow window = window_around(hole);
+  collect_points(hole, window);
   if (!measure_depth(hole)) return false;
   grow(hole);
   if (is_too_wide(hole) || !measure_depth(hole)) return false;
@@ -535,7 +545,7 @@ bool is_hole(HoleCase& hole, HoleDescription& description) {
   if (hole.others > std::max(kFewOthers, most_others)) return false;
   if (hole.seen < hole.params.seen || opposite_sides(hole.sides) < kFewestOpposite) return false;
   RingEvidence rings;
-  if (!has_walls(hole, counts, rings)) return false;
+  if (!has_walls(hole, window, counts, rings)) return false;
   if (rings.rings < 2 && hole.others > most_others) return false;
   description = describe_hole(hole, counts, rings);
   return true;
