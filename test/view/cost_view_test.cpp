@@ -94,6 +94,22 @@ TEST(CostView, CellsThatWereNotObservedHaveTheColourOfTheReason) {
   EXPECT_EQ(pixel_at(image, layout.classes, {2.5, 2.5}), kLethalColour);
 }
 
+TEST(CostView, CellsWithoutGroundAreLethalThoughNothingWasSeenOfThem) {
+  World world;
+  const GridGeometry& geometry = world.description.grid.geometry;
+  CellIndex edge;
+  ASSERT_TRUE(geometry.cell_at(4.55, 4.55, edge));
+  world.costs.missing = {value_of(geometry.id_of(edge))};
+  const std::string file = test::empty_test_folder() + "cost.png";
+  const TopViewOptions options;
+  write_cost_view(file, world.description, world.costs, world.robot, options);
+  mrpt::img::CImage image;
+  ASSERT_TRUE(image.loadFromFile(file));
+  const TopViewLayout layout = top_view_layout(geometry, options.max_width, options.max_height);
+  EXPECT_EQ(pixel_at(image, layout.classes, {4.55, 4.55}), kLethalColour);
+  EXPECT_EQ(pixel_at(image, layout.classes, {4.55, 4.25}), kUnobservedColour);
+}
+
 TEST(CostView, LayersHaveAMapPerKnownPart) {
   World world;
   const std::string folder = test::empty_test_folder();

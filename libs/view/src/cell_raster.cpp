@@ -34,23 +34,29 @@ std::vector<Span> spans(int cells, int pixels) {
   return result;
 }
 
-/// Calls `visit(pixel value, slot)` for every observed cell of every pixel.
+/// Calls visit(pixel, cell) for all cells of each pixel, observed or not.
 template <class Value, class Visit>
-void for_each_cell_of_pixels(const ElevationGrid& grid, Raster<Value>& raster, Visit visit) {
-  const auto rows = spans(grid.geometry.cells_l(), raster.height);
-  const auto columns = spans(grid.geometry.cells_w(), raster.width);
-  Value* value = raster.values.data();
+void for_each_place_of_pixels(const GridGeometry& geometry, Raster<Value>& raster, Visit visit) {
+  const auto rows = spans(geometry.cells_l(), raster.height);
+  const auto columns = spans(geometry.cells_w(), raster.width);
+  Value* pixel = raster.values.data();
   for (const Span& row : rows) {
     for (const Span& column : columns) {
       for (int l = row.first; l < row.last; ++l) {
-        const Slot* slots = grid.slot_of.data() + value_of(grid.geometry.id_of({l, 0}));
-        for (int w = column.first; w < column.last; ++w) {
-          if (slots[w] != kUnobserved) visit(*value, static_cast<std::size_t>(slots[w]));
-        }
+        for (int w = column.first; w < column.last; ++w) visit(*pixel, CellIndex{l, w});
       }
-      ++value;
+      ++pixel;
     }
   }
+}
+
+/// Calls `visit(pixel value, slot)` for every observed cell of every pixel.
+template <class Value, class Visit>
+void for_each_cell_of_pixels(const ElevationGrid& grid, Raster<Value>& raster, Visit visit) {
+  for_each_place_of_pixels(grid.geometry, raster, [&](Value& pixel, CellIndex cell) {
+    const Slot slot = grid.slot_of[static_cast<std::size_t>(value_of(grid.geometry.id_of(cell)))];
+    if (slot != kUnobserved) visit(pixel, static_cast<std::size_t>(slot));
+  });
 }
 
 /// kSeen where the cell is observed, whatever was seen in it.
@@ -156,21 +162,23 @@ Raster<UnseenReason> unseen_raster(const ElevationGrid& grid,
   constexpr std::array<int, kUnseenReasonCount> kRank{4, 1, 3, 2};  // seen first
   const auto rank = [&](UnseenReason reason) { return kRank[static_cast<std::size_t>(reason)]; };
   Raster<UnseenReason> raster(width, height);
-  const auto rows = spans(grid.geometry.cells_l(), height);
-  const auto columns = spans(grid.geometry.cells_w(), width);
-  UnseenReason* value = raster.values.data();
-  for (const Span& row : rows) {
-    for (const Span& column : columns) {
-      *value = UnseenReason::kOutOfView;
-      for (int l = row.first; l < row.last; ++l) {
-        for (int w = column.first; w < column.last; ++w) {
-          const UnseenReason reason = reason_at(grid, reasons, {l, w});
-          if (rank(reason) > rank(*value)) *value = reason;
-        }
-      }
-      ++value;
-    }
-  }
+  std::fill(raster.values.begin(), raster.values.end(), UnseenReason::kOutOfView);
+  for_each_place_of_pixels(grid.geometry, raster, [&](UnseenReason& pixel, CellIndex cell) {
+    const UnseenReason reason = reason_at(grid, reasons, cell);
+    if (rank(reason) > rank(pixel)) pixel = reason;
+  });
+  return raster;
+}
+
+Raster<std::uint8_t> marked_raster(const GridGeometry& geometry,
+                                   const std::vector<std::int32_t>& cells, int width, int height) {
+  Raster<std::uint8_t> raster(width, height);
+  std::fill(raster.values.begin(), raster.values.end(), std::uint8_t{0});
+  if (cells.empty()) return raster;
+  for_each_place_of_pixels(geometry, raster, [&](std::uint8_t& pixel, CellIndex cell) {
+    const std::int32_t id = value_of(geometry.id_of(cell));
+    if (std::binary_search(cells.begin(), cells.end(), id)) pixel = 1;
+  });
   return raster;
 }
 

@@ -37,8 +37,10 @@ int rank_of(const Cost& cost) {
   return 0;
 }
 
+/// \param missing cells without ground, which are lethal though nothing was seen of them; sorted
 void paint_costs(Canvas& canvas, const MapPanel& panel, const ElevationGrid& grid,
-                 const std::vector<Cost>& costs, const TopViewOptions& options) {
+                 const std::vector<Cost>& costs, const std::vector<std::int32_t>& missing,
+                 const TopViewOptions& options) {
   const Raster<Slot> slots = slot_raster(
       grid, panel.width, panel.height,
       [&](std::size_t a, std::size_t b) { return rank_of(costs[a]) < rank_of(costs[b]); });
@@ -48,6 +50,10 @@ void paint_costs(Canvas& canvas, const MapPanel& panel, const ElevationGrid& gri
                                       : colour_of(costs[static_cast<std::size_t>(slot)]));
   });
   paint_unseen(grid, options, pixels);
+  const auto lethal = marked_raster(grid.geometry, missing, panel.width, panel.height);
+  for (std::size_t k = 0; k < pixels.values.size(); ++k) {
+    if (lethal.values[k] != 0) pixels.values[k] = packed(kLethalColour);
+  }
   canvas.paint(pixels, panel.left, panel.top);
 }
 
@@ -64,9 +70,11 @@ void draw_cost_bar(Canvas& canvas, const Box& bar) {
 }
 
 void draw_cost_legend(Canvas& canvas, const TopViewLayout& layout, const std::vector<Cost>& costs,
-                      const ElevationGrid& grid, const TopViewOptions& options) {
+                      std::size_t missing, const ElevationGrid& grid,
+                      const TopViewOptions& options) {
   std::array<std::size_t, 4> cells{};
   for (const Cost& cost : costs) ++cells[static_cast<std::size_t>(cost.status)];
+  cells[static_cast<std::size_t>(CostStatus::kLethal)] += missing;
   const double left = layout.right_column;
   const double base = layout.key_top + 12.0;
   canvas.text(left, base, "cost", kSmall);
@@ -112,13 +120,15 @@ constexpr int kSheetKey = 60;
 struct Layer {
   std::string name;
   std::vector<Cost> costs;
+  std::vector<std::int32_t> missing;  // cells without ground, if they belong to it
 };
 
 std::vector<Layer> layers_of(const CellCosts& costs, const std::vector<Cost>& all) {
   std::vector<Layer> layers;
   for (const auto& entry : enum_names(CostPart{})) {
     if (!costs.has(entry.value)) continue;
-    Layer layer{entry.name, all};
+    Layer layer{entry.name, all, {}};
+    if (entry.value == CostPart::kPothole) layer.missing = costs.missing;
     for (std::size_t k = 0; k < all.size(); ++k) {
       const double part = all[k].parts.of(entry.value);
       const bool of_plane = entry.value == CostPart::kSlope || entry.value == CostPart::kRoughness;
@@ -130,7 +140,7 @@ std::vector<Layer> layers_of(const CellCosts& costs, const std::vector<Cost>& al
     }
     layers.push_back(std::move(layer));
   }
-  layers.push_back({"cost: the largest of all", all});
+  layers.push_back({"cost: the largest of all", all, costs.missing});
   return layers;
 }
 
@@ -150,7 +160,8 @@ std::string lethal_text(const Layer& layer) {
   const auto lethal = std::count_if(layer.costs.begin(), layer.costs.end(), [](const Cost& cost) {
     return cost.status == CostStatus::kLethal;
   });
-  return layer.name + ", lethal: " + grouped(static_cast<std::size_t>(lethal));
+  return layer.name +
+         ", lethal: " + grouped(static_cast<std::size_t>(lethal) + layer.missing.size());
 }
 
 void draw_sheet_key(Canvas& canvas, double top, const ElevationGrid& grid,
@@ -192,14 +203,14 @@ void write_cost_view(const std::string& file, const Description& description,
   draw_title(canvas, layout, description, of_title);
   draw_heights(canvas, layout, description, options.axes);
   const MapPanel& panel = layout.classes;
-  paint_costs(canvas, panel, description.grid, worst, options);
+  paint_costs(canvas, panel, description.grid, worst, costs.missing, options);
   draw_grid(canvas, panel, options.axes);
   clip_to(canvas, panel);
   draw_robot(canvas, panel);
   cairo_restore(canvas.context());
   draw_caption(canvas, panel, layout.right_column, layout.right_column + layout.column_width,
                caption_of(robot, costs));
-  draw_cost_legend(canvas, layout, worst, description.grid, options);
+  draw_cost_legend(canvas, layout, worst, costs.missing.size(), description.grid, options);
   draw_footer(canvas, layout, options.params);
   files::write_atomically(file, png_bytes(canvas.pixels()));
 }
@@ -223,7 +234,7 @@ void write_cost_layers(const std::string& file, const Description& description,
               {19.0, true, Align::kLeft, kInk, false});
   for (std::size_t k = 0; k < layers.size(); ++k) {
     const MapPanel panel = panel_of_sheet(extent, k, width, height);
-    paint_costs(canvas, panel, description.grid, layers[k].costs, options);
+    paint_costs(canvas, panel, description.grid, layers[k].costs, layers[k].missing, options);
     draw_frame(canvas, panel);
     canvas.text(panel.left, panel.top - 9.0, lethal_text(layers[k]),
                 {13.0, true, Align::kLeft, kInk, false});

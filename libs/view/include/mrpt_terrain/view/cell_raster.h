@@ -50,6 +50,12 @@ enum class CellKind : std::uint8_t {
                                                  const std::vector<UnseenReason>& reasons,
                                                  int width, int height);
 
+/// 1 where one of a pixel's cells is listed, else 0, the same way. \param cells `CellId` numbers of
+/// the grid, sorted
+[[nodiscard]] Raster<std::uint8_t> marked_raster(const GridGeometry& geometry,
+                                                 const std::vector<std::int32_t>& cells, int width,
+                                                 int height);
+
 /// Number of cells that were not observed, by reason (`kSeen`: those that were).
 [[nodiscard]] std::array<std::size_t, kUnseenReasonCount> count_unseen(
     const ElevationGrid& grid, const std::vector<UnseenReason>& reasons);
