@@ -2,7 +2,6 @@
 #include "tall_things.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace mrpt_terrain {
 namespace {
@@ -29,10 +28,10 @@ unsigned layer_of(const GroundSurface& surface, std::size_t slot, float layers_p
   const LatticeCell cell = surface.cells.cell[slot];
   const float plane = surface.gradient_x * surface.lattice().centre(cell.row) +
                       surface.gradient_y * surface.lattice().centre(cell.column) + surface.offset;
-  // A wild point may be anywhere; converted to an integer, it must be one.
-  constexpr float kMost = 1e6F;
-  const float layer = std::floor((surface.ground[slot].low - plane) * layers_per_metre);
-  return static_cast<unsigned>(static_cast<int>(std::clamp(layer, -kMost, kMost))) & 63U;
+  // Shifted by a multiple of 64 layers, so that none is negative; what is wilder is as good there.
+  constexpr float kMost = 8192.0F;
+  const float height = (surface.ground[slot].low - plane) * layers_per_metre;
+  return static_cast<unsigned>(std::clamp(height, -kMost, kMost) + kMost) & 63U;
 }
 
 // In place of the layers of each block those of the nine blocks about it.
