@@ -204,6 +204,39 @@ TEST(GroundSurface, ACarHasItsHeight) {
   EXPECT_GT(highest, 0.7F) << "the beams at 0.81 m meet it";
 }
 
+// A hedge on a sector of level ground, of which the lowest ring that meets it shows a strip 0.3 to
+// 0.9 m up, a few metres behind the last ring on the ground: the only one near, and smooth. That
+// strip, and all above it, is a thing: higher above the reference than the 12 cm up to which points
+// may be ground where nothing stands.
+TEST(GroundSurface, TheFootOfAHedgeIsNotTheGroundWhereOneRingMeetsIt) {
+  struct Case {
+    double range, steepness, sensor;
+    int beams;
+  };
+  static constexpr double kTop = 3.5;
+  for (const Case& scene :
+       {Case{15.0, 2.0, 1.3, 16}, Case{20.0, 2.0, 0.8, 16}, Case{22.0, 2.0, 0.8, 16},
+        Case{22.0, 1.0, 1.3, 24}, Case{20.0, 2.0, 0.8, 32}, Case{20.0, 2.0, 1.3, 32}}) {
+    const auto hedge = [&scene](double x, double y) {
+      const double range = std::hypot(x, y), azimuth = std::atan2(y, x);
+      if (std::abs(azimuth) > 0.6 || range > scene.range + 6.0) return 0.0;
+      const double behind = range - scene.range - 0.4 * std::sin(9.0 * azimuth);
+      return std::clamp(behind * scene.steepness, 0.0, kTop);
+    };
+    const GroundSurface surface =
+        surface_of(worlds::ring_scan(worlds::coarse_rings(scene.beams), scene.sensor, hedge));
+    int points = 0;
+    float least = std::numeric_limits<float>::max();
+    for (std::size_t k = 0; k < surface.height.size(); ++k) {
+      if (surface.cells.points[k].z < 0.2F) continue;
+      least = std::min(least, surface.height[k]);
+      ++points;
+    }
+    ASSERT_GT(points, 400);
+    EXPECT_GT(least, 0.12F) << scene.range << " m, " << scene.beams << " beams";
+  }
+}
+
 // Degenerate input.
 TEST(GroundSurface, WithoutPointsItIsThePlaneZero) {
   Points useless;

@@ -7,6 +7,7 @@
 #include "ground_cells.h"
 #include "mrpt_terrain/core/random.h"
 #include "surface_levels.h"
+#include "tall_things.h"
 #include "wide_registers.h"
 
 namespace mrpt_terrain {
@@ -166,6 +167,7 @@ void find_ground_surface(const PointsView& scan, const GroundSurfaceParams& para
   sort_into_cells(scan, lattice_of(params), workspace.sort, result.cells);
   measure_ground_cells(params, workspace, result);
   find_plane(params, workspace, result);
+  find_tall_things(result, workspace);
   start_levels(result, workspace);
   correct_level(params, kSurfaceLevels - 1, workspace, result);
   for (int level = kSurfaceLevels - 2; level >= kRawLevel; --level) {

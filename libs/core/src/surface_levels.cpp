@@ -18,6 +18,12 @@ constexpr int kFineLevel = 2;
 // Weight of a height below the reference is at least this share of that of a perfect cell: what is
 // low limits the ground, however rough it is.
 constexpr float kLeastBelow = 0.1F;
+// From this level on, of 3.2 m, all that is near a place may be one ring on a bush. Cells beside
+// something tall lift these levels by less than rough ground may, and count for less where they
+// do. If they are ground after all, finer levels follow it.
+constexpr int kCoarseLevel = 3;
+constexpr float kBesideTallBend = 0.75F;  // of `rough_bend`
+constexpr float kBesideTallWeight = 0.2F;
 
 int side_of(const SquareLattice& lattice, int level) { return lattice.side >> level; }
 
@@ -64,11 +70,15 @@ void sum_differences(const GroundSurfaceParams& params, int level,
     const float reference = level == 0 ? view.height[surface.cells.number_of(cell)]
                                        : view.between(step[cell.row], step[cell.column]).height;
     const float difference = ground.low - reference;
+    const bool doubtful = level >= kCoarseLevel && workspace.beside_tall[slot] != 0;
     // What rises and is smooth is a hill, what rises and is rough may be a bush.
-    const float above = tolerance + bend * (rough_bend + (1.0F - rough_bend) * ground.smooth);
+    const float rise =
+        doubtful ? kBesideTallBend * rough_bend : rough_bend + (1.0F - rough_bend) * ground.smooth;
+    const float above = tolerance + bend * rise;
     if (!(difference <= above && difference >= below)) continue;
     const bool limits = difference < 0.0F && (ground.points > 1.0F || level <= kFineLevel);
-    const float weight = limits ? low_weight * std::max(ground.weight, kLeastBelow) : ground.weight;
+    const float weight = limits ? low_weight * std::max(ground.weight, kLeastBelow)
+                                : ground.weight * (doubtful ? kBesideTallWeight : 1.0F);
     const std::int32_t at = (cell.row >> level) * view.side + (cell.column >> level);
     LevelSums& sums = workspace.level_sums[static_cast<std::size_t>(at)];
     if (sums.cell_weight == 0.0F) workspace.touched.push_back(at);

@@ -111,6 +111,8 @@ struct GroundSurfaceWorkspace {
   CellPointsWorkspace sort;
   std::vector<HeightSums> sums;  ///< per slot: low points, about the cell's centre in x and y
   std::vector<float> part;       ///< per slot: share of the low band
+  std::vector<std::uint8_t> beside_tall;  ///< per slot: 1 where something tall stands nearby
+  std::vector<std::uint64_t> layers, layers_in_row;      ///< per block of cells: a bit per height
   std::array<std::vector<float>, kSurfaceLevels> level;  ///< heights at the centres of cells
   std::vector<LevelStep> step;                           ///< per row, or column, of the lattice
   std::vector<LevelSums> level_sums;                     ///< per cell of a level
