@@ -115,6 +115,23 @@ TEST(Gaps, ADitchWithoutFloorIsFound) {
   }
 }
 
+// A pit that the robot cannot look into: beams meet its far side only, well below its edge.
+TEST(Gaps, APitWhoseFarSideIsSeenIsFound) {
+  const double from = 3.5;
+  for (const double length : {2.5, 5.0, 7.0}) {
+    const double to = from + length;
+    const auto ground = [=](double x, double y) {
+      return std::abs(y) < 10.0 ? ditch(x, from, to, 6.0) : 0.0;
+    };
+    const std::vector<HoleDescription> pits = gaps_in(ground).of(HoleKind::kGap);
+    ASSERT_GE(pits.size(), 1U) << length;
+    for (const HoleDescription& pit : pits) EXPECT_GE(pit.depth, 0.3) << length;
+    GapParams narrower;
+    narrower.widest = length - 1.0;
+    EXPECT_TRUE(gaps_in(ground, rings(), narrower).of(HoleKind::kGap).empty()) << length;
+  }
+}
+
 // The lower ground is seen, parallel to that before the edge.
 TEST(Gaps, ADropToLowerGroundIsFound) {
   for (const double depth : {0.5, 0.65, 0.8}) {

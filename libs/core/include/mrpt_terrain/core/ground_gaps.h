@@ -14,7 +14,7 @@ namespace mrpt_terrain {
 struct GapParams {
   double least_depth = 0.08;  ///< metres: of what is seen in a ditch below the ground before it
   double drop_depth = 0.3;    ///< metres: by which the ground behind an edge lies lower
-  double widest = 4.0;        ///< metres: from the ground before a ditch to that behind it
+  double widest = 8.0;        ///< metres: from the ground before a ditch to that behind it
   double least_width = 0.5;   ///< metres across the beams
   double least_fall = 0.08;   ///< of the beams that are looked at, metres per metre
   int missing = 3;            ///< rings that must be missing where nothing comes back
