@@ -100,19 +100,33 @@ TEST(FaceSlope, StatedDeviationsHold) {
   }
 }
 
-// The sides of a ramp have a third of its points.
+// A ramp that rises to the left, seen from its side, which has a third of the points.
 TEST(FaceSlope, SidesOfARampAreNotItsFace) {
   RandomGenerator random(93, 0);
-  Points points = FaceScan{15.0 * kDegree, 0.0}.seen(random);
+  Points points = FaceScan{15.0 * kDegree, 90.0 * kDegree}.seen(random);
   const std::size_t n = points.size();
   for (std::size_t k = 0; k < n / 2; ++k) {
-    points.push_back(static_cast<float>(4.2 + 1.6 * random.uniform()), 0.8F,
-                     static_cast<float>(0.5 * random.uniform()));
+    const double y = 1.6 * random.uniform() - 0.8;
+    const double top = 0.3 + y * std::tan(15.0 * kDegree);
+    points.push_back(4.2F, static_cast<float>(y), static_cast<float>(top * random.uniform()));
   }
   const Slope slope = slope_of(points);
   ASSERT_EQ(slope.status, FeatureStatus::kOk);
   EXPECT_NEAR(slope.angle, 15.0 * kDegree, 1.5 * kDegree);
+  EXPECT_NEAR(slope.direction, 90.0 * kDegree, 3.0 * kDegree);
   EXPECT_LT(slope.inliers, static_cast<int>(1.15 * static_cast<double>(n)));
+}
+
+// Rubble: half of the points lie on a plane, the others above and below it at the same places.
+TEST(FaceSlope, WhatIsSeenThroughIsNoFace) {
+  RandomGenerator random(97, 0);
+  Points points = FaceScan{10.0 * kDegree, 0.0, 0.8, 0.005}.seen(random);
+  const std::size_t n = points.size();
+  for (std::size_t k = 0; k < n; k += 2) {
+    const auto off = static_cast<float>(0.3 * (random.uniform() - 0.5));
+    points.push_back(points.x[k], points.y[k], points.z[k] + off);
+  }
+  EXPECT_EQ(slope_of(points).status, FeatureStatus::kNotPlanar);
 }
 
 TEST(FaceSlope, WhatIsNoFaceHasAStatus) {
@@ -142,6 +156,101 @@ TEST(FaceSlope, WhatIsNoFaceHasAStatus) {
   const std::vector<std::int32_t> all{0, 1, 2};
   EXPECT_EQ(estimate_face_slope(wall.view(), {}, all_of(all), {}, 1, 0, workspace).status,
             FeatureStatus::kNoOrigin);
+}
+
+/// A ramp of 1.6 m by 1.6 m about (5, 0) on level ground that rises along x from z = 0, seen by
+/// rings 2 deg apart with an error of each; the ramp's points come first.
+struct RampScan {
+  double angle = 15.0 * kDegree;
+  double ring_noise = 0.015, noise = 0.008;
+  std::size_t on_ramp = 0;
+
+  [[nodiscard]] Points seen(RandomGenerator& random) {
+    Points ramp, ground;
+    for (int ring = 0; ring < 14; ++ring) {
+      const double error = ring_noise * normal_deviate(random);
+      const double e = (-31.0 + 2.0 * ring) * kDegree;
+      for (int column = -120; column <= 120; ++column) {
+        const double a = 0.3 * kDegree * column;
+        const double dx = std::cos(e) * std::cos(a), dy = std::cos(e) * std::sin(a);
+        const double dz = std::sin(e);
+        // z = tan(angle) (x - 4.2) along the beam, or z = 0.
+        const double slope = std::tan(angle);
+        const double to_ramp = (-4.2 * slope - 1.2) / (dz - slope * dx);
+        const bool meets =
+            to_ramp > 0.0 && std::abs(to_ramp * dx - 5.0) <= 0.8 && std::abs(to_ramp * dy) <= 0.8;
+        const double range = meets ? to_ramp : -1.2 / dz;
+        // What is behind the ramp is hidden, or near its edge.
+        if (!meets && range * dx > 4.2 && std::abs(range * dy) <= 1.0) continue;
+        const double r = range + error + noise * normal_deviate(random);
+        (meets ? ramp : ground)
+            .push_back(static_cast<float>(r * dx), static_cast<float>(r * dy),
+                       static_cast<float>(1.2 + r * dz));
+      }
+    }
+    on_ramp = ramp.size();
+    for (std::size_t i = 0; i < ground.size(); ++i)
+      ramp.push_back(ground.x[i], ground.y[i], ground.z[i]);
+    return ramp;
+  }
+};
+
+// The rings that meet a ramp meet the ground beside it, too, and are as wrong there.
+TEST(FaceSlope, TheGroundBesideTellsErrorsOfRings) {
+  constexpr int kTrials = 60;
+  double with = 0.0, without = 0.0;
+  int in_two_sigma = 0;
+  BeamSlopeParams params;
+  params.ring_sigma = 0.015;
+  FieldWorkspace field;
+  FaceSlopeWorkspace workspace;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    RandomGenerator random(95, static_cast<std::uint64_t>(trial));
+    RampScan scan;
+    const Points points = scan.seen(random);
+    find_field_ground(points.view(), GroundSurfaceParams{}, GroundLabelParams{}, field);
+    const std::vector<float> raised(points.size(), 0.0F);
+    std::vector<std::int32_t> all(scan.on_ramp);
+    std::iota(all.begin(), all.end(), 0);
+    // What is known of the ground to begin with is a little wrong.
+    const FaceSurroundings around{
+        field, raised, {Eigen::Vector3d(0.01, -0.01, 1.0).normalized(), -0.05}, {5.0, 0.0, 0.0}};
+    const BeamOrigins origins{&kOrigin, nullptr};
+    const Slope plain =
+        estimate_face_slope(points.view(), origins, all_of(all), params, 1, 0, workspace);
+    const Slope slope =
+        estimate_face_slope(points.view(), origins, all_of(all), params, 1, 0, workspace, &around);
+    ASSERT_EQ(plain.status, FeatureStatus::kOk) << trial;
+    ASSERT_EQ(slope.status, FeatureStatus::kOk) << trial;
+    EXPECT_LT(slope.angle_sigma, plain.angle_sigma) << trial;
+    const double error = slope.angle - scan.angle;
+    with += error * error / kTrials;
+    without += (plain.angle - scan.angle) * (plain.angle - scan.angle) / kTrials;
+    in_two_sigma += std::abs(error) <= 2.0 * slope.angle_sigma ? 1 : 0;
+  }
+  EXPECT_LT(std::sqrt(with), 0.7 * std::sqrt(without));
+  EXPECT_GE(in_two_sigma, 52);
+}
+
+// A level platform behind a ramp has as many points, and is off the plane of the ramp by little
+// where they meet.
+TEST(FaceSlope, TheFaceBesideDoesNotTurnIt) {
+  for (std::uint64_t trial = 0; trial < 20; ++trial) {
+    RandomGenerator random(96, trial);
+    Points points = FaceScan{12.0 * kDegree, 0.0, 0.8, 0.01, 0.0}.seen(random);
+    const double top = 0.3 + 0.8 * std::tan(12.0 * kDegree);
+    const auto n = points.size();
+    for (std::size_t k = 0; k < 3 * n / 4; ++k) {
+      const double e = 0.01 * normal_deviate(random);
+      const double x = 5.8 + random.uniform(), y = 1.6 * random.uniform() - 0.8;
+      const double range = std::hypot(x, y, top - 1.2);
+      points.push_back(static_cast<float>(x + e * x / range), static_cast<float>(y),
+                       static_cast<float>(top + e * (top - 1.2) / range));
+    }
+    const Slope slope = slope_of(points);
+    ASSERT_EQ(slope.status, FeatureStatus::kOk) << trial;
+    EXPECT_NEAR(slope.angle, 12.0 * kDegree, 0.6 * kDegree) << trial;
+  }
 }
 
 }  // namespace

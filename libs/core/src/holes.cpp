@@ -49,6 +49,9 @@ constexpr double kFewOthers = 2.0;
 // ...and of the four pairs of opposite directions, so many have it on both sides: rim on one side
 // alone may be a step.
 constexpr int kFewestOpposite = 2;
+// One pair will do where this share of the floor lies in traces of several rings that have walls at
+// both ends.
+constexpr double kBothEnds = 0.8;
 // Walls: traces of at least so many points on average, and so many points in all.
 constexpr double kLeastTrace = 1.5;
 constexpr int kLeastWalled = 4;
@@ -529,6 +532,12 @@ void add_cells(const ElevationGrid& grid, std::vector<std::int32_t>& members,
   hole_cells.first.push_back(static_cast<std::int32_t>(hole_cells.items.size()));
 }
 
+// Whether rings show rim on both sides of the floor, as directions do: several traces of several
+// rings end at walls at both ends.
+bool show_both_sides(const RingEvidence& rings, const HoleCounts& counts) {
+  return rings.rings >= 2 && rings.traces >= 2 && rings.strictly >= kBothEnds * counts.measured;
+}
+
 bool is_hole(HoleCase& hole, HoleDescription& description) {
   if (is_too_wide(hole)) return false;
   mark_zones(hole);
@@ -543,9 +552,11 @@ bool is_hole(HoleCase& hole, HoleDescription& description) {
   look_around(hole);
   const double most_others = (1.0 - hole.params.closed) * hole.around;
   if (hole.others > std::max(kFewOthers, most_others)) return false;
-  if (hole.seen < hole.params.seen || opposite_sides(hole.sides) < kFewestOpposite) return false;
+  const int opposite = opposite_sides(hole.sides);
+  if (hole.seen < hole.params.seen || opposite == 0) return false;
   RingEvidence rings;
   if (!has_walls(hole, window, counts, rings)) return false;
+  if (opposite < kFewestOpposite && !show_both_sides(rings, counts)) return false;
   if (rings.rings < 2 && hole.others > most_others) return false;
   description = describe_hole(hole, counts, rings);
   return true;

@@ -156,6 +156,27 @@ void measure_to_ground(const GroundAround& around, double max_sigma, ClusterDesc
   result.status = result.angle_sigma <= max_sigma ? FeatureStatus::kOk : FeatureStatus::kUncertain;
 }
 
+Slope estimate_slope_of_thing(const StageInput& stage, const GroundAround* around, std::size_t k,
+                              DescriptionWorkspace& workspace, const Description& description) {
+  const BeamSlopeParams& params = stage.params.beam_slope;
+  const IndexRange members = points_for_slope(stage, workspace, description, k);
+  const std::uint64_t seed = stage.params.slope.seed;
+  const PointsView& points = stage.scan.points;
+  if (around == nullptr || !around->known) {
+    return estimate_face_slope(points, stage.scan.origins, members, params, seed, k,
+                               workspace.face_slope);
+  }
+  const Position2 at = description.things[k].centroid;
+  const float z = around->height_at(static_cast<float>(at.x), static_cast<float>(at.y));
+  const Eigen::Vector3d place(at.x, at.y, static_cast<double>(z));
+  const Eigen::Vector3d normal =
+      Eigen::Vector3f(-around->gradient_x, -around->gradient_y, 1.0F).cast<double>().normalized();
+  const FaceSurroundings surroundings{
+      workspace.field, workspace.raised_ground.height, {normal, -normal.dot(place)}, place};
+  return estimate_face_slope(points, stage.scan.origins, members, params, seed, k,
+                             workspace.face_slope, &surroundings);
+}
+
 }  // namespace
 
 double confidence_of(double points, double raised) {
@@ -207,13 +228,11 @@ void measure_thing_slopes(const StageInput& stage, DescriptionWorkspace& workspa
     ClusterDescription& thing = description.things[k];
     const bool needed = class_from_height(thing.height, classes) == TerrainClass::kNone;
     if (!needed && !classes.all_features) continue;
-    thing.slope = estimate_face_slope(
-        stage.scan.points, stage.scan.origins, points_for_slope(stage, workspace, description, k),
-        stage.params.beam_slope, stage.params.slope.seed, k, workspace.face_slope);
-    if (thing.slope.status != FeatureStatus::kOk) continue;
     const GroundAround* around =
         ground_around(description.grid.geometry, stage.params.raised_ground,
                       workspace.raised_ground, thing.centroid.x, thing.centroid.y);
+    thing.slope = estimate_slope_of_thing(stage, around, k, workspace, description);
+    if (thing.slope.status != FeatureStatus::kOk) continue;
     if (around != nullptr)
       measure_to_ground(*around, stage.params.beam_slope.max_angle_sigma, thing);
     if (thing.roughness.status == FeatureStatus::kOk &&
