@@ -33,7 +33,7 @@ class WrittenPoints {
   /// Measured on a grid of 4 m with cells of 1 m.
   [[nodiscard]] FieldStages measured() const {
     FieldStages stages;
-    find_field_ground({}, {}, {}, stages.field);
+    find_field_ground(PointsView{}, {}, {}, stages.field);
     stages.field.points = {heights_, supports_};
     ElevationGridWorkspace workspace;
     build_elevation_grid(points.view(), {4.0, 4.0, 1.0, 3.0}, workspace, stages.grid,

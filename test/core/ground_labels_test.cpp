@@ -97,8 +97,9 @@ TEST(GroundLabels, BordersBelongToTheGround) {
 }
 
 // Analytic: where n_g N(h; 0, sigma) = prior n_o / 0.4 m. Looked for by halving, with the counts of
-// a cell that has no neighbours; the ground is taken to hold 0.3 points more, its spread is the
-// least that is permitted. Float logarithms: 1e-5 m.
+// a cell that has no neighbours; of the points in the 6 cm of the ground those are taken off that
+// things have there, which are as dense as in their 0.4 m, and 0.3 points are added; the spread is
+// the least that is permitted. Float logarithms: 1e-5 m.
 TEST(GroundLabels, ThresholdIsWhereGroundAndThingsAreEquallyLikely) {
   const GroundLabelParams params;
   for (const int ground : {1, 5, 40}) {
@@ -107,7 +108,8 @@ TEST(GroundLabels, ThresholdIsWhereGroundAndThingsAreEquallyLikely) {
         const double z = h / params.sigma_min;
         const double normal =
             std::exp(-0.5 * z * z) / (params.sigma_min * std::sqrt(2.0 * worlds::kPi));
-        return (ground + 0.3) * normal - params.prior * object / 0.4;
+        const double own = std::max(ground - object * 0.06 / 0.4, 0.0);
+        return (own + 0.3) * normal - params.prior * object / 0.4;
       };
       double low = 0.0, high = 1.0;
       for (int k = 0; k < 40; ++k) {

@@ -76,7 +76,7 @@ void describe_field(const ScanView& scan, const DescriptionParams& params,
   const auto done = [listener](Stage what) {
     if (listener != nullptr) listener->stage_done(what);
   };
-  find_field_ground(scan.points, params.ground_surface, params.ground_labels, workspace.field);
+  find_field_ground(scan, params.ground_surface, params.ground_labels, workspace.field);
   done(Stage::kGround);
   description.projection =
       build_elevation_grid(scan.points, params.grid, workspace.grid, description.grid,

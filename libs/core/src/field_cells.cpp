@@ -63,12 +63,12 @@ void count_points(const FieldPoints& points, const PointSlots& point_slots, Fiel
 
 }  // namespace
 
-void find_field_ground(const PointsView& scan, const GroundSurfaceParams& surface,
+void find_field_ground(const ScanView& scan, const GroundSurfaceParams& surface,
                        const GroundLabelParams& labels, FieldWorkspace& workspace) {
   find_ground_surface(scan, surface, workspace.surface_workspace, workspace.surface);
   label_by_height(workspace.surface, labels, workspace.label_workspace, workspace.threshold,
                   workspace.support);
-  put_in_order(scan, workspace.surface, workspace.support, workspace.points);
+  put_in_order(scan.points, workspace.surface, workspace.support, workspace.points);
 }
 
 void measure_field_cells(const FieldWorkspace& workspace, const ElevationGrid& grid,

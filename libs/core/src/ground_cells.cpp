@@ -2,6 +2,7 @@
 #include "ground_cells.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 
@@ -14,8 +15,17 @@ namespace {
 constexpr float kHighPart = 2.0F;
 // How much a point over the low band takes from the weight of a cell, in points of the band.
 constexpr float kHighPointWeight = 3.0F;
+// Mean weight of the cells around, where what is rough is the ground, and where it stands on it.
+constexpr float kRoughAround = 0.2F, kSmoothAround = 0.4F;
+// Beams that meet the ground at a flatter angle count as if it were this sine: errors of a cell's
+// mean plane would have the say.
+constexpr float kLeastSine = 0.02F;
+constexpr float kSensorHeight = 1.0F;  // metres, where it is not known
 // Level on whose cells rough cells are compared with smooth ones around.
 constexpr int kRoughLevel = 4;
+
+// Levels that weights are for: those of raw low heights, and the finer ones.
+enum class Levels { kCoarse, kFine };
 
 // Heights of the points of a cell above some reference, which is linear in it.
 struct Heights {
@@ -102,13 +112,42 @@ HeightSums sums_around(const CellPoints& cells, const std::vector<HeightSums>& s
   return around;
 }
 
-void measure_smoothness(const GroundSurfaceParams& params, GroundSurfaceWorkspace& workspace,
-                        GroundSurface& surface) {
-  const auto sigma = static_cast<float>(params.smooth_sigma);
+float squared(float value) { return value * value; }
+
+// Squared sine of the angle between the beam to the middle of a cell and the plane of the points.
+float squared_sine(const BeamOrigins& origins, const GroundSurface& surface, std::size_t slot,
+                   const HeightSums& around) {
+  constexpr float kHold = 0.001F;  // m^2
+  const CellPoints& cells = surface.cells;
+  std::array<float, 3> sensor{0.0F, 0.0F, kSensorHeight};
+  if (origins.known()) {
+    const CellPoint& first = cells.points[static_cast<std::size_t>(cells.first[slot])];
+    sensor = origins.of(static_cast<std::size_t>(first.index));
+  }
+  const float dx = sensor[0] - cells.lattice.centre(cells.cell[slot].row);
+  const float dy = sensor[1] - cells.lattice.centre(cells.cell[slot].column);
+  const float dz = sensor[2] - surface.ground[slot].low;
+  const SumsPlane plane = fit_plane(around, kHold);
+  const float across = dz - plane.gradient_x * dx - plane.gradient_y * dy;
+  const float squared_length = 1.0F + squared(plane.gradient_x) + squared(plane.gradient_y);
+  return squared(across) / (squared_length * (squared(dx) + squared(dy) + squared(dz)));
+}
+
+float smoothness(float variance, float at_half) {
+  return 1.0F / (1.0F + squared(variance / at_half));
+}
+
+void measure_smoothness(const BeamOrigins& origins, const GroundSurfaceParams& params,
+                        GroundSurfaceWorkspace& workspace, GroundSurface& surface) {
+  const float rough = squared(static_cast<float>(params.smooth_sigma));
+  const float firm = squared(static_cast<float>(params.firm_sigma));
+  const float along_beam = squared(static_cast<float>(params.beam_sigma));
   for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
-    const float variance = variance_across(sums_around(surface.cells, workspace.sums, slot));
-    const float ratio = variance / (sigma * sigma);
-    surface.ground[slot].smooth = 1.0F / (1.0F + ratio * ratio);
+    const HeightSums around = sums_around(surface.cells, workspace.sums, slot);
+    const float variance = variance_across(around);
+    const float sine2 = std::max(squared_sine(origins, surface, slot, around), squared(kLeastSine));
+    workspace.even[slot] = smoothness(variance, rough);
+    workspace.firm[slot] = smoothness(variance, std::min(rough, firm + along_beam * sine2));
   }
 }
 
@@ -138,8 +177,8 @@ void smooth_shares(int side, GroundSurfaceWorkspace& workspace) {
 }
 
 // Rough cells between smooth ones are things that stand there; where all cells are rough, they are
-// the ground.
-void weigh_against_surroundings(const GroundSurfaceParams& params,
+// the ground. Among smooth ones, scatter along the beams is roughness too.
+void weigh_against_surroundings(const GroundSurfaceParams& params, Levels levels,
                                 GroundSurfaceWorkspace& workspace, GroundSurface& surface) {
   constexpr float kLeast = 0.001F;  // keeps cells of no weight from dividing by zero
   const SquareLattice& lattice = surface.lattice();
@@ -155,29 +194,35 @@ void weigh_against_surroundings(const GroundSurfaceParams& params,
   smooth_shares(side, workspace);
   const auto rough = static_cast<float>(params.rough_weight);
   for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
-    float& weight = surface.ground[slot].weight;
+    GroundCell& ground = surface.ground[slot];
     const float around = workspace.share[coarse_cell(lattice, surface.cells.cell[slot])];
-    weight = weight / (weight + rough * around + kLeast);
+    const float among_smooth =
+        std::clamp((around - kRoughAround) / (kSmoothAround - kRoughAround), 0.0F, 1.0F);
+    const float even = workspace.even[slot];
+    ground.smooth = even + among_smooth * (workspace.firm[slot] - even);
+    // Coarse levels bridge what is loose; on the fine ones it is out of their tolerance.
+    const float smooth = levels == Levels::kCoarse ? ground.smooth : even;
+    const float weight = squared(workspace.part[slot]) * smooth;
+    ground.weight = weight / (weight + rough * around + kLeast);
   }
 }
 
-void set_weights(const GroundSurfaceParams& params, GroundSurfaceWorkspace& workspace,
-                 GroundSurface& surface) {
-  for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
-    const float part = workspace.part[slot];
-    surface.ground[slot].weight = part * part * surface.ground[slot].smooth;
-  }
-  weigh_against_surroundings(params, workspace, surface);
+void set_weights(const GroundSurfaceParams& params, Levels levels,
+                 GroundSurfaceWorkspace& workspace, GroundSurface& surface) {
+  for (std::size_t slot = 0; slot < surface.ground.size(); ++slot)
+    surface.ground[slot].weight = squared(workspace.part[slot]) * workspace.firm[slot];
+  weigh_against_surroundings(params, levels, workspace, surface);
 }
 
 }  // namespace
 
-void measure_ground_cells(const GroundSurfaceParams& params, GroundSurfaceWorkspace& workspace,
-                          GroundSurface& surface) {
+void measure_ground_cells(const BeamOrigins& origins, const GroundSurfaceParams& params,
+                          GroundSurfaceWorkspace& workspace, GroundSurface& surface) {
   const CellPoints& cells = surface.cells;
   surface.ground.resize(cells.occupied());
   workspace.sums.resize(cells.occupied());
-  workspace.part.resize(cells.occupied());
+  for (auto* values : {&workspace.part, &workspace.even, &workspace.firm})
+    values->resize(cells.occupied());
   for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
     const Heights heights = heights_in(cells, slot, {});
     const LowBand band = low_band_of(heights, static_cast<float>(params.low_band));
@@ -186,8 +231,8 @@ void measure_ground_cells(const GroundSurfaceParams& params, GroundSurfaceWorksp
     surface.ground[slot].low = band.mean;
     surface.ground[slot].points = band.points;
   }
-  measure_smoothness(params, workspace, surface);
-  set_weights(params, workspace, surface);
+  measure_smoothness(origins, params, workspace, surface);
+  set_weights(params, Levels::kCoarse, workspace, surface);
 }
 
 void measure_above_level(const GroundSurfaceParams& params, int level,
@@ -201,7 +246,7 @@ void measure_above_level(const GroundSurfaceParams& params, int level,
     surface.ground[slot].low = heights.reference.height + band.mean;
     surface.ground[slot].points = band.points;
   }
-  set_weights(params, workspace, surface);
+  set_weights(params, Levels::kFine, workspace, surface);
 }
 
 }  // namespace mrpt_terrain

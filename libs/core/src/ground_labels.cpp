@@ -10,6 +10,9 @@ namespace {
 constexpr float kGroundBand = 0.06F;                    // metres
 constexpr float kObjectLow = 0.1F, kObjectHigh = 0.5F;  // metres
 constexpr float kNeighbourShare = 0.3F;                 // of a point in a cell beside it
+// Things that stand on the ground are in its band as they are in theirs: as many of their points
+// per metre of height, which are none of the ground's.
+constexpr float kObjectInBand = kGroundBand / (kObjectHigh - kObjectLow);
 // What is taken to be seen besides the points: a third of a point, and one of 2 cm spread.
 constexpr float kPriorPoints = 0.3F;
 constexpr float kPriorSigma = 0.02F;
@@ -54,7 +57,8 @@ float threshold_of(const HeightCounts& counts, const GroundLabelParams& params, 
   const float sigma = std::clamp(std::sqrt(variance), static_cast<float>(params.sigma_min),
                                  static_cast<float>(params.sigma_max));
   constexpr float kRootOfTwoPi = 2.5066283F;
-  const float ground = (counts.ground + kPriorPoints) / (sigma * kRootOfTwoPi);
+  const float own = std::max(counts.ground - kObjectInBand * counts.object, 0.0F);
+  const float ground = (own + kPriorPoints) / (sigma * kRootOfTwoPi);
   const float object =
       static_cast<float>(params.prior) * counts.object / (kObjectHigh - kObjectLow);
   const float height = ground > object ? sigma * std::sqrt(2.0F * std::log(ground / object)) : 0.0F;

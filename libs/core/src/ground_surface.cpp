@@ -162,10 +162,10 @@ float GroundSurface::height_at(float x, float y) const {
   return LevelView{node.data(), lattice().side, lattice().cell_size}.at(x, y).height;
 }
 
-void find_ground_surface(const PointsView& scan, const GroundSurfaceParams& params,
+void find_ground_surface(const ScanView& scan, const GroundSurfaceParams& params,
                          GroundSurfaceWorkspace& workspace, GroundSurface& result) {
-  sort_into_cells(scan, lattice_of(params), workspace.sort, result.cells);
-  measure_ground_cells(params, workspace, result);
+  sort_into_cells(scan.points, lattice_of(params), workspace.sort, result.cells);
+  measure_ground_cells(scan.origins, params, workspace, result);
   find_plane(params, workspace, result);
   find_tall_things(result, workspace);
   start_levels(result, workspace);

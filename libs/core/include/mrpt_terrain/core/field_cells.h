@@ -68,7 +68,7 @@ struct FieldWorkspace {
 };
 
 /// Finds the ground reference and labels the points by it.
-void find_field_ground(const PointsView& scan, const GroundSurfaceParams& surface,
+void find_field_ground(const ScanView& scan, const GroundSurfaceParams& surface,
                        const GroundLabelParams& labels, FieldWorkspace& workspace);
 
 /// Counts the points of every cell by their support. A cell is non-ground (C_N) if it holds a point

@@ -9,7 +9,7 @@
 #include "mrpt_terrain/core/cell_points.h"
 #include "mrpt_terrain/core/height_sums.h"
 #include "mrpt_terrain/core/param_info.h"
-#include "mrpt_terrain/core/points.h"
+#include "mrpt_terrain/core/scan_view.h"
 
 /// \file
 /// The local ground reference of field mode: a height of the ground for every place around the
@@ -26,10 +26,12 @@ struct GroundSurfaceParams {
   double low_part = 0.4;     ///< points this far above the lowest of a cell tell how rough it is
   double tolerance = 0.05;   ///< of low heights above the reference, on every level
   double bend = 0.12;        ///< the same per metre of a level's cell: how far ground rises in it
-  double rough_bend = 0.4;   ///< share of `bend` that rough cells are given
+  double rough_bend = 0.3;   ///< share of `bend` that rough cells are given
   double dip = 2.0;          ///< tolerance of heights below the reference over that above
   double low_weight = 20.0;  ///< weight of a low height below the reference over one above
   double smooth_sigma = 0.035;  ///< roughness at which a cell counts half
+  double firm_sigma = 0.005;    ///< the same among smooth ones, of surfaces that beams graze...
+  double beam_sigma = 0.04;     ///< ...and of noise along the beams: what they enter has more
   double rough_weight = 0.8;    ///< how little rough cells count between smooth ones
   double hold = 1.0;            ///< weight of the coarser level, in cells
 
@@ -61,6 +63,10 @@ struct GroundSurfaceParams {
                                      "weight of heights below the reference over those above"});
     visit(self.smooth_sigma,
           ParamInfo{"smooth_sigma", "", "m", 0.001, 1.0, "roughness at which a cell counts half"});
+    visit(self.firm_sigma, ParamInfo{"firm_sigma", "", "m", 0.001, 1.0,
+                                     "the same among smooth cells, where beams graze the ground"});
+    visit(self.beam_sigma, ParamInfo{"beam_sigma", "", "m", 0.001, 10.0,
+                                     "and this much more along the beams: grass has more"});
     visit(self.rough_weight,
           ParamInfo{"rough_weight", "", "", 0.0, 100.0,
                     "how little rough cells count between smooth ones; 0: as much as smooth ones"});
@@ -73,7 +79,7 @@ struct GroundSurfaceParams {
 struct GroundCell {
   float low = 0.0F;     ///< mean height of the points of its low band
   float points = 0.0F;  ///< how many they are
-  float smooth = 0.0F;  ///< 0 to 1: 1 / (1 + (roughness / smooth_sigma)^4)
+  float smooth = 0.0F;  ///< 0 to 1: of roughness, and among smooth cells of scatter along beams
   float weight = 0.0F;  ///< of `low` in the reference, 0 to 1
 };
 
@@ -112,7 +118,9 @@ struct GroundSurfaceWorkspace {
   std::vector<HeightSums> sums;  ///< per slot: low points, about the cell's centre in x and y
   std::vector<float> part;       ///< per slot: share of the low band
   std::vector<std::uint8_t> beside_tall;  ///< per slot: 1 where something tall stands nearby
-  std::vector<std::uint64_t> layers, layers_in_row;      ///< per block of cells: a bit per height
+  std::vector<std::uint64_t> layers, layers_in_row;  ///< per block of cells: a bit per height
+  std::vector<float> even;                           ///< per slot: smoothness by roughness alone
+  std::vector<float> firm;  ///< per slot: smoothness by scatter along the beams
   std::array<std::vector<float>, kSurfaceLevels> level;  ///< heights at the centres of cells
   std::vector<LevelStep> step;                           ///< per row, or column, of the lattice
   std::vector<LevelSums> level_sums;                     ///< per cell of a level
@@ -127,10 +135,14 @@ struct GroundSurfaceWorkspace {
 /// A plane near the robot is refined on seven levels of cells, from 64 cells down to one: on every
 /// level, the low heights of the cells that lie within a tolerance of the reference so far are
 /// averaged and carried on to the next. Heights below the reference count more than those above
-/// it, smooth cells more than rough ones, cells with points over their low band less.
+/// it, smooth cells more than rough ones, cells with points over their low band less. Among smooth
+/// cells, those count as rough that scatter more along the beams than range noise does.
+///
+/// Where beams begin is taken to be 1 m above the frame's origin if it is not known.
+///
 /// \param scan metres; z = 0 near the ground under the robot, up to `max_offset` and `max_tilt`
 /// \param[in,out] result overwritten; keeps its memory. Without points it is the plane z = 0.
-void find_ground_surface(const PointsView& scan, const GroundSurfaceParams& params,
+void find_ground_surface(const ScanView& scan, const GroundSurfaceParams& params,
                          GroundSurfaceWorkspace& workspace, GroundSurface& result);
 
 }  // namespace mrpt_terrain
