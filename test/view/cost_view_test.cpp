@@ -47,13 +47,18 @@ Rgb pixel_at(const mrpt::img::CImage& image, const MapPanel& panel, Position2 pl
   return {bgr[2], bgr[1], bgr[0]};
 }
 
-TEST(CostView, CellsHaveTheColoursOfTheirCosts) {
-  const World world;
+mrpt::img::CImage picture_of(const World& world, const TopViewOptions& options) {
   const std::string file = test::empty_test_folder() + "cost.png";
-  const TopViewOptions options;
   write_cost_view(file, world.description, world.costs, world.robot, options);
   mrpt::img::CImage image;
-  ASSERT_TRUE(image.loadFromFile(file));
+  EXPECT_TRUE(image.loadFromFile(file));
+  return image;
+}
+
+TEST(CostView, CellsHaveTheColoursOfTheirCosts) {
+  const World world;
+  const TopViewOptions options;
+  const mrpt::img::CImage image = picture_of(world, options);
   const TopViewLayout layout =
       top_view_layout(world.description.grid.geometry, options.max_width, options.max_height);
   // Off the lines of the grid, which lie on whole metres.
@@ -84,11 +89,8 @@ TEST(CostView, CellsThatWereNotObservedHaveTheColourOfTheReason) {
   const GridGeometry& geometry = world.description.grid.geometry;
   world.costs.unseen.assign(static_cast<std::size_t>(geometry.array_size()),
                             UnseenReason::kOccluded);
-  const std::string file = test::empty_test_folder() + "cost.png";
   const TopViewOptions options;
-  write_cost_view(file, world.description, world.costs, world.robot, options);
-  mrpt::img::CImage image;
-  ASSERT_TRUE(image.loadFromFile(file));
+  const mrpt::img::CImage image = picture_of(world, options);
   const TopViewLayout layout = top_view_layout(geometry, options.max_width, options.max_height);
   EXPECT_EQ(pixel_at(image, layout.classes, {4.5, 4.5}), kOccludedColour);
   EXPECT_EQ(pixel_at(image, layout.classes, {2.5, 2.5}), kLethalColour);
@@ -100,11 +102,8 @@ TEST(CostView, CellsWithoutGroundAreLethalThoughNothingWasSeenOfThem) {
   CellIndex edge;
   ASSERT_TRUE(geometry.cell_at(4.55, 4.55, edge));
   world.costs.missing = {value_of(geometry.id_of(edge))};
-  const std::string file = test::empty_test_folder() + "cost.png";
   const TopViewOptions options;
-  write_cost_view(file, world.description, world.costs, world.robot, options);
-  mrpt::img::CImage image;
-  ASSERT_TRUE(image.loadFromFile(file));
+  const mrpt::img::CImage image = picture_of(world, options);
   const TopViewLayout layout = top_view_layout(geometry, options.max_width, options.max_height);
   EXPECT_EQ(pixel_at(image, layout.classes, {4.55, 4.55}), kLethalColour);
   EXPECT_EQ(pixel_at(image, layout.classes, {4.55, 4.25}), kUnobservedColour);

@@ -408,12 +408,8 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
   Slope slope;
   slope.points = static_cast<std::int32_t>(members.size());
   slope.iterations = params.hypotheses;
-  if (!origins.known()) {
-    slope.status = FeatureStatus::kNoOrigin;
-    return slope;
-  }
-  if (members.size() < kLeastPoints) {
-    slope.status = FeatureStatus::kTooFewPoints;
+  if (!origins.known() || members.size() < kLeastPoints) {
+    slope.status = origins.known() ? FeatureStatus::kTooFewPoints : FeatureStatus::kNoOrigin;
     return slope;
   }
   const Eigen::Vector3f centre = centre_of(points, members);
@@ -436,11 +432,8 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
   const Eigen::Vector3d beam = middle_beam.cast<double>();
   const Moments face = find_face(fit, workspace);
   const double width = width_of(face);
-  if (face.n < 3.0 || width < std::max(kLeastWidth, kWidthSigmas * fit.range_sigma)) {
-    slope.status = FeatureStatus::kUncertain;
-    return slope;
-  }
-  if (rings_per_column(workspace.beams) < kLeastRingsPerColumn) {
+  if (face.n < 3.0 || width < std::max(kLeastWidth, kWidthSigmas * fit.range_sigma) ||
+      rings_per_column(workspace.beams) < kLeastRingsPerColumn) {
     slope.status = FeatureStatus::kUncertain;
     return slope;
   }
@@ -453,7 +446,7 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
     slope.status = FeatureStatus::kNotPlanar;
     return slope;
   }
-  if (around != nullptr) add_beams_beside(points, origins, *around, origin, workspace);
+  if (around != nullptr) add_beams_beside(origins, *around, origin, workspace);
   follow_beams(workspace.beams, workspace.rings);
   const auto on_face = std::count_if(workspace.rings.begin(), workspace.rings.end(),
                                      [](const FaceRing& ring) { return ring.on_face; });

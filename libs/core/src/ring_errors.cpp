@@ -28,7 +28,7 @@ constexpr double kAlike = 4.0;
 constexpr int kRounds = 4;
 // Parts further from the plane than so many standard deviations do not count.
 constexpr double kOutlier = 3.0;
-// Standard deviation that the slope of the ground has before it is seen: 45 deg, but not more.
+// Standard deviation that the slope of the ground has before it is seen: 1 is 45 deg.
 constexpr double kSlopeBefore = 1.0;
 // Fewer parts tell nothing.
 constexpr std::size_t kFewestParts = 6;
@@ -68,10 +68,9 @@ bool sector_of(const FaceSlopeWorkspace& workspace, Sector& sector) {
 /// Finds the points of the ground in a sector.
 class GroundSearch {
  public:
-  GroundSearch(const PointsView& points, const BeamOrigins& origins, const FaceSurroundings& around,
+  GroundSearch(const BeamOrigins& origins, const FaceSurroundings& around,
                const std::array<float, 3>& origin, const Sector& sector)
-      : points_(points),
-        origins_(origins),
+      : origins_(origins),
         around_(around),
         origin_(origin),
         sector_(sector),
@@ -131,7 +130,6 @@ class GroundSearch {
     }
   }
 
-  const PointsView& points_;
   const BeamOrigins& origins_;
   const FaceSurroundings& around_;
   const std::array<float, 3>& origin_;
@@ -249,9 +247,8 @@ void sort_beams(std::vector<FaceBeam>& beams) {
   });
 }
 
-void add_beams_beside(const PointsView& points, const BeamOrigins& origins,
-                      const FaceSurroundings& around, const std::array<float, 3>& origin,
-                      FaceSlopeWorkspace& workspace) {
+void add_beams_beside(const BeamOrigins& origins, const FaceSurroundings& around,
+                      const std::array<float, 3>& origin, FaceSlopeWorkspace& workspace) {
   Sector sector;
   if (!sector_of(workspace, sector)) return;
   // Columns are those of azimuths about the middle of the face, so that none is at their end.
@@ -262,7 +259,7 @@ void add_beams_beside(const PointsView& points, const BeamOrigins& origins,
   sector.farthest = static_cast<float>(std::hypot(around.place.x() - double{origin[0]},
                                                   around.place.y() - double{origin[1]})) +
                     kFarther;
-  const GroundSearch search(points, origins, around, origin, sector);
+  const GroundSearch search(origins, around, origin, sector);
   search.visit([&](std::int32_t point, float azimuth, float elevation) {
     FaceBeam beam;
     beam.column = column_of(azimuth, sector);

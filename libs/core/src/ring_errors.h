@@ -19,9 +19,8 @@ inline constexpr float kRingGap = 0.0026F;
 /// is seen, and are no part of a thing.
 /// \param origin where the beams of the face start, metres
 /// \param[in,out] workspace `beams` are those of the face before, and sorted after
-void add_beams_beside(const PointsView& points, const BeamOrigins& origins,
-                      const FaceSurroundings& around, const std::array<float, 3>& origin,
-                      FaceSlopeWorkspace& workspace);
+void add_beams_beside(const BeamOrigins& origins, const FaceSurroundings& around,
+                      const std::array<float, 3>& origin, FaceSlopeWorkspace& workspace);
 
 /// Sorts beams by column, then by elevation.
 void sort_beams(std::vector<FaceBeam>& beams);

@@ -68,10 +68,13 @@ struct FaceSurroundings {
 /// what stands on it are left out by Tukey's weights. The covariance is that of the fit, and that
 /// of errors that all points of a ring share (`BeamSlopeParams::ring_sigma`): with two or three
 /// rings on a face they are most of it. Where the same rings meet the ground beside the face, that
-/// tells a part of their errors, which are taken off. \param members points of the thing \param
-/// seed, stream of the sample consensus \return status kNotPlanar where the plane explains less
-/// than `BeamSlopeParams::least_share` of the points or they scatter by more than `max_scatter`
-/// about it
+/// tells a part of their errors, which are taken off.
+///
+/// \param members points of the thing
+/// \param seed, stream of the sample consensus
+/// \param around null: nothing is known of it, and rings keep their errors
+/// \return status kNotPlanar where the plane explains less than `BeamSlopeParams::least_share` of
+/// the points and is no clear face near the ground, or they scatter by more than `max_scatter`
 [[nodiscard]] Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins,
                                         IndexRange members, const BeamSlopeParams& params,
                                         std::uint64_t seed, std::uint64_t stream,
