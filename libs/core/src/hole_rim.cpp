@@ -63,23 +63,74 @@ MRPT_TERRAIN_LANES double total(const DoubleLanes& lanes) {
   return sum;
 }
 
-// Sums over the points that count: those of weight `first` in the first round, then those within
-// the band about the surface. `rim` has z = 0 at the origin; `height` is its height there.
+// How many points have a weight.
+MRPT_TERRAIN_LANES void count_weights(const DoubleLanes& w, DoubleLanes& count) {
+  const DoubleLanes none = w * 0.0;
+  count += w > 0.0 ? none + 1.0 : none;
+}
+
+// The weights of the points within the band about the surface, 0 for the others. Both limits as
+// factors: compilers work on lanes one by one where one selection depends on two comparisons.
+MRPT_TERRAIN_LANES void weights_within(const RimPoints& points, std::size_t i, double band,
+                                       const DoubleLanes& low, DoubleLanes& w) {
+  DoubleLanes weight;
+  load_from(points.weight.data() + i, weight);
+  const DoubleLanes none = weight * 0.0;
+  const DoubleLanes one = none + 1.0;
+  const DoubleLanes not_below = low <= band ? one : none;
+  const DoubleLanes not_above = low >= -kUpperBand * band ? one : none;
+  w = weight * not_below * not_above;
+}
+
+// Lets the points within the band count. Returns whether they are others than before.
 MRPT_TERRAIN_WIDE_REGISTERS
-void sum_rim(const RimPoints& points, const RimSurface& rim, double height, double band,
-             bool first_round, PowerSums& sums) {
-  DoubleLanes moment[PowerSums::kMoments] = {}, heights[PowerSums::kHeights] = {}, count = {};
-  for (std::size_t i = 0; i < points.u.size(); i += kCellLanes) {
-    DoubleLanes u, v, z, low, weight, first;
+bool choose_points(double band, RimPoints& points) {
+  MaskLanes changed = {};
+  for (std::size_t i = 0; i < points.size; i += kCellLanes) {
+    DoubleLanes low, before, w;
+    load_from(points.low.data() + i, low);
+    load_from(points.counted.data() + i, before);
+    weights_within(points, i, band, low, w);
+    changed |= w != before;
+    std::memcpy(points.counted.data() + i, &w, sizeof(w));
+  }
+  return any_of(changed);
+}
+
+// Sums over the points that count, as far as a plane needs them.
+MRPT_TERRAIN_WIDE_REGISTERS
+void sum_for_plane(const RimPoints& points, PowerSums& sums) {
+  DoubleLanes moment[6] = {}, heights[3] = {}, count = {};
+  for (std::size_t i = 0; i < points.size; i += kCellLanes) {
+    DoubleLanes u, v, z, w;
     load_rim(points, i, u, v, z);
-    load_from(points.weight.data() + i, weight);
-    load_from(points.first.data() + i, first);
-    depths_below(rim, u, v, z, low);
-    low += height;
-    const DoubleLanes none = weight * 0.0;
-    const DoubleLanes within = low <= band ? (low >= -kUpperBand * band ? weight : none) : none;
-    const DoubleLanes w = first_round ? first : within;
-    count += w > 0.0 ? none + 1.0 : none;
+    load_from(points.counted.data() + i, w);
+    count_weights(w, count);
+    const DoubleLanes wu = w * u, wv = w * v;
+    moment[0] += w;
+    moment[1] += wu;
+    moment[2] += wv;
+    moment[3] += wu * u;
+    moment[4] += wu * v;
+    moment[5] += wv * v;
+    heights[0] += w * z;
+    heights[1] += wu * z;
+    heights[2] += wv * z;
+  }
+  for (std::size_t k = 0; k < 6; ++k) sums.moment[k] = total(moment[k]);
+  for (std::size_t k = 0; k < 3; ++k) sums.height[k] = total(heights[k]);
+  sums.points = total(count);
+}
+
+// All sums over the points that count.
+MRPT_TERRAIN_WIDE_REGISTERS
+void sum_for_bend(const RimPoints& points, PowerSums& sums) {
+  DoubleLanes moment[PowerSums::kMoments] = {}, heights[PowerSums::kHeights] = {}, count = {};
+  for (std::size_t i = 0; i < points.size; i += kCellLanes) {
+    DoubleLanes u, v, z, w;
+    load_rim(points, i, u, v, z);
+    load_from(points.counted.data() + i, w);
+    count_weights(w, count);
     const DoubleLanes wu = w * u, wv = w * v;
     const DoubleLanes wuu = wu * u, wuv = wu * v, wvv = wv * v;
     const DoubleLanes wuuu = wuu * u, wuuv = wuu * v, wuvv = wuv * v, wvvv = wvv * v;
@@ -110,32 +161,32 @@ void sum_rim(const RimPoints& points, const RimSurface& rim, double height, doub
   sums.points = total(count);
 }
 
-// Weighted squares of the depths of the points within the band, their weights and their number.
+// Measures how far all points lie below the surface, which has z = 0 at the origin but for
+// `height`, and sums up the weighted squares of those within the band, their weights and number.
 MRPT_TERRAIN_WIDE_REGISTERS
-void sum_squares(const RimPoints& points, const RimSurface& rim, double height, double band,
+void sum_squares(const RimSurface& rim, double height, double band, RimPoints& points,
                  double& squares, double& weights, double& count) {
   DoubleLanes square_lanes = {}, weight_lanes = {}, count_lanes = {};
-  for (std::size_t i = 0; i < points.u.size(); i += kCellLanes) {
-    DoubleLanes u, v, z, low, weight;
+  for (std::size_t i = 0; i < points.size; i += kCellLanes) {
+    DoubleLanes u, v, z, low, w;
     load_rim(points, i, u, v, z);
-    load_from(points.weight.data() + i, weight);
     depths_below(rim, u, v, z, low);
     low += height;
-    const DoubleLanes none = weight * 0.0;
-    const DoubleLanes w = low <= band ? (low >= -kUpperBand * band ? weight : none) : none;
+    std::memcpy(points.low.data() + i, &low, sizeof(low));
+    weights_within(points, i, band, low, w);
     square_lanes += w * low * low;
     weight_lanes += w;
-    count_lanes += w > 0.0 ? none + 1.0 : none;
+    count_weights(w, count_lanes);
   }
   squares = total(square_lanes);
   weights = total(weight_lanes);
   count = total(count_lanes);
 }
 
-// One round: the surface of least squares through the points of the sums.
+// The surface of least squares through the points of the sums.
 // \param[out] height of the surface at the origin
 template <int kTerms>
-bool fit_round(const PowerSums& sums, RimSurface& rim, double& height) {
+bool solve(const PowerSums& sums, RimSurface& rim, double& height) {
   using Matrix = Eigen::Matrix<double, kTerms, kTerms>;
   using Vector = Eigen::Matrix<double, kTerms, 1>;
   constexpr int kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};
@@ -165,10 +216,21 @@ bool fit_round(const PowerSums& sums, RimSurface& rim, double& height) {
   return true;
 }
 
-double spread_of(const RimPoints& points, const RimSurface& rim, double height, double band,
-                 int terms) {
+bool fit_plane(const RimPoints& points, RimSurface& rim, double& height) {
+  PowerSums sums;
+  sum_for_plane(points, sums);
+  return solve<3>(sums, rim, height);
+}
+
+bool fit_bend(const RimPoints& points, RimSurface& rim, double& height) {
+  PowerSums sums;
+  sum_for_bend(points, sums);
+  return solve<6>(sums, rim, height);
+}
+
+double spread_of(const RimSurface& rim, double height, double band, int terms, RimPoints& points) {
   double squares = 0.0, weights = 0.0, n = 0.0;
-  sum_squares(points, rim, height, band, squares, weights, n);
+  sum_squares(rim, height, band, points, squares, weights, n);
   if (n <= terms) return 0.0;
   return std::sqrt(squares / (weights * (1.0 - terms / n)));
 }
@@ -196,16 +258,17 @@ int start(const std::vector<HolePoint>& points, RimSurface& rim) {
 }
 
 // The points around about the origin of the surface, and some of no weight for the lanes that are
-// left over.
+// left over. Those of the first round count.
 void take_around(const std::vector<HolePoint>& points, const RimSurface& rim, bool away_only,
                  RimPoints& around) {
-  around.clear();
+  around.reserve((points.size() + kCellLanes - 1) / kCellLanes * kCellLanes);
+  around.size = 0;
   for (const HolePoint& p : points) {
     if (!is_around(p)) continue;
     const bool first = !away_only || p.zone == HoleZone::kRim;
     around.add(p.x - rim.x, p.y - rim.y, p.z - rim.z, p.weight, first);
   }
-  while (around.u.size() % kCellLanes != 0) around.add(0.0, 0.0, 0.0, 0.0, false);
+  while (around.size % kCellLanes != 0) around.add(0.0, 0.0, 0.0, 0.0, false);
 }
 
 bool same(const RimSurface& a, const RimSurface& b) {
@@ -224,10 +287,12 @@ bool fit_rim(const std::vector<HolePoint>& points, double low, RimPoints& scratc
     const bool plane = round < kPlaneRounds;
     const RimSurface before = rim;
     const double height_before = height, band_before = band;
-    PowerSums sums;
-    sum_rim(scratch, rim, height, band, round == 0, sums);
-    if (!(plane ? fit_round<3>(sums, rim, height) : fit_round<6>(sums, rim, height))) return false;
-    rim.sigma = spread_of(scratch, rim, height, band, plane ? 3 : 6);
+    // Where the same points count, the same surface goes through them.
+    const bool changed = round == 0 || choose_points(band, scratch);
+    if (changed || round == kPlaneRounds) {
+      if (!(plane ? fit_plane(scratch, rim, height) : fit_bend(scratch, rim, height))) return false;
+    }
+    rim.sigma = spread_of(rim, height, band, plane ? 3 : 6, scratch);
     band = std::clamp(kOutlier * rim.sigma, std::min(kLeastBand, low), low);
     // The same points again: the other rounds would change nothing.
     if (!plane && same(rim, before) && height == height_before && band == band_before) break;

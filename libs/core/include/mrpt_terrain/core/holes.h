@@ -133,21 +133,26 @@ struct RingPoint {
   bool has_before;            ///< on the same ring
 };
 
-/// Points around a hole for the fit of its rim, about some origin; metres.
+/// Points around a hole for the fit of its rim, about some origin; metres. The arrays are at least
+/// as long as there are points.
 struct RimPoints {
+  std::size_t size = 0;
   std::vector<double> u, v, z;
   std::vector<double> weight;
-  std::vector<double> first;  ///< weight in the first round
+  std::vector<double> counted;  ///< weight in the present round; 0 for points that do not count
+  std::vector<double> low;      ///< depth below the surface so far
 
-  void clear() {
-    for (auto* values : {&u, &v, &z, &weight, &first}) values->clear();
+  void reserve(std::size_t n) {
+    if (n <= u.size()) return;
+    for (auto* values : {&u, &v, &z, &weight, &counted, &low}) values->resize(n);
   }
   void add(double pu, double pv, double pz, double w, bool in_first) {
-    u.push_back(pu);
-    v.push_back(pv);
-    z.push_back(pz);
-    weight.push_back(w);
-    first.push_back(in_first ? w : 0.0);
+    u[size] = pu;
+    v[size] = pv;
+    z[size] = pz;
+    weight[size] = w;
+    counted[size] = in_first ? w : 0.0;
+    ++size;
   }
 };
 
