@@ -358,14 +358,11 @@ std::size_t set_lanes(const Ground& ground, const std::vector<std::uint8_t>& in_
 
 // What is nearby, in registers.
 struct NearbyLanes {
-  MaskLanes known;
+  DoubleLanes known;  // flags
   DoubleLanes height, roughness;
 };
 MRPT_TERRAIN_LANES void load(const CellsAround& cells, std::size_t k, NearbyLanes& nearby) {
-  const DoubleLanes zero{};
-  DoubleLanes known;
-  load(cells.known[k], known);
-  nearby.known = known > zero;
+  load(cells.known[k], nearby.known);
   load(cells.height[k], nearby.height);
   load(cells.roughness[k], nearby.roughness);
 }
@@ -393,7 +390,9 @@ MRPT_TERRAIN_LANES void find_step_within(const CellsAround& cells, double max_gr
   load(cells.h_diff, h_diff);
   load(cells.steepness, steepness);
   const DoubleLanes most = zero + std::sqrt(2.0) * max_gradient;
-  const DoubleLanes gradient = self.known & (steepness < most) ? steepness : most;
+  DoubleLanes takes = self.known;
+  keep_less(steepness, most, takes);
+  const DoubleLanes gradient = takes > zero ? steepness : most;
   step = h_diff - gradient * cell_size - kNoiseExtent * noise;
   step = step > zero ? step : zero;
 }
@@ -402,7 +401,8 @@ MRPT_TERRAIN_LANES void find_step_within(const CellsAround& cells, double max_gr
 // moved by `tolerance`: counts in `step` where it is greater and `counts`.
 MRPT_TERRAIN_LANES void raise_to_spread(const DoubleLanes& before, const DoubleLanes& behind,
                                         const DoubleLanes& own, const DoubleLanes& tolerance,
-                                        const MaskLanes& counts, DoubleLanes& step) {
+                                        const DoubleLanes& counts, DoubleLanes& step) {
+  const DoubleLanes zero{};
   const DoubleLanes high = before < behind ? behind : before;
   const DoubleLanes low = before < behind ? before : behind;
   const DoubleLanes apart = high - low;
@@ -410,7 +410,9 @@ MRPT_TERRAIN_LANES void raise_to_spread(const DoubleLanes& before, const DoubleL
   const DoubleLanes above = own - low - tolerance;
   DoubleLanes spread = apart < below ? below : apart;
   spread = spread < above ? above : spread;
-  step = counts & (step < spread) ? spread : step;
+  DoubleLanes raises = counts;
+  keep_less(step, spread, raises);
+  step = raises > zero ? spread : step;
 }
 
 // The surface that slope and roughness are told from: the cell's own, or, where those before and
@@ -423,17 +425,18 @@ MRPT_TERRAIN_LANES void tell_smoothest(const NearbyLanes& before, const NearbyLa
                                        std::size_t k, ToldLanes& told) {
   constexpr double kApart = 4.0;  // standard deviations
   const DoubleLanes zero{};
-  const MaskLanes behind_is_smoother = behind.roughness < before.roughness;
-  const DoubleLanes smooth = behind_is_smoother ? behind.roughness : before.roughness;
-  const DoubleLanes rough = behind_is_smoother ? before.roughness : behind.roughness;
+  const DoubleLanes&a = before.roughness, &b = behind.roughness;
+  const DoubleLanes smooth = b < a ? b : a;
+  const DoubleLanes rough = b < a ? a : b;
   const DoubleLanes rise = before.height - behind.height;
   const DoubleLanes size = rise < zero ? -rise : rise;
-  const MaskLanes takes =
-      before.known & behind.known & (size > kApart * rough) & (smooth < told.roughness);
-  const DoubleLanes which = behind_is_smoother ? zero + static_cast<double>(kNearby - 1 - k)
-                                               : zero + static_cast<double>(k);
-  told.which = takes ? which : told.which;
-  told.roughness = takes ? smooth : told.roughness;
+  DoubleLanes takes = before.known * behind.known;
+  keep_less(kApart * rough, size, takes);
+  keep_less(smooth, told.roughness, takes);
+  const DoubleLanes which =
+      b < a ? zero + static_cast<double>(kNearby - 1 - k) : zero + static_cast<double>(k);
+  told.which = takes > zero ? which : told.which;
+  told.roughness = takes > zero ? smooth : told.roughness;
 }
 
 // Step of the cells and the surface that is told; see the header.
@@ -450,23 +453,26 @@ void measure_lanes(double max_gradient, double cell_size, CellsAround& cells) {
   take_roots(points);
   const DoubleLanes tolerance = kSurelyNoise * noise / points;
   find_step_within(cells, max_gradient, cell_size, self, noise, step);
-  ToldLanes told{self.known ? zero + static_cast<double>(kSelf) : zero - 1.0, self.roughness};
-  MaskLanes lone = zero != zero;
+  ToldLanes told{self.known > zero ? zero + static_cast<double>(kSelf) : zero - 1.0, self.roughness};
+  DoubleLanes told_by_any;
+  set_flags(told_by_any);
   for (std::size_t k = 0; k < kSelf; ++k) {
     NearbyLanes before, behind;
     load(cells, k, before);
     load(cells, kNearby - 1 - k, behind);
     tell_smoothest(before, behind, k, told);
     // Where one has no surface, the cell's own stands in, or else the other.
-    const DoubleLanes stand_in =
-        self.known ? self.height : (before.known ? before.height : behind.height);
-    const MaskLanes any = self.known | before.known | behind.known;
-    lone |= ~any;
-    raise_to_spread(before.known ? before.height : stand_in,
-                    behind.known ? behind.height : stand_in, mean_z, tolerance, any, step);
+    const DoubleLanes other = before.known > zero ? before.height : behind.height;
+    const DoubleLanes stand_in = self.known > zero ? self.height : other;
+    const DoubleLanes any_known = self.known + before.known + behind.known;
+    const DoubleLanes any = any_known > zero ? zero + 1.0 : zero;
+    told_by_any = told_by_any * any;
+    raise_to_spread(before.known > zero ? before.height : stand_in,
+                    behind.known > zero ? behind.height : stand_in, mean_z, tolerance, any, step);
   }
   store(step, cells.step);
   store(told.which, cells.told);
+  const MaskLanes lone = told_by_any == zero;
   std::memcpy(cells.lone, &lone, sizeof(lone));
 }
 

@@ -69,17 +69,13 @@ MRPT_TERRAIN_LANES void count_weights(const DoubleLanes& w, DoubleLanes& count) 
   count += w > 0.0 ? none + 1.0 : none;
 }
 
-// The weights of the points within the band about the surface, 0 for the others. Both limits as
-// factors: compilers work on lanes one by one where one selection depends on two comparisons.
+// The weights of the points within the band about the surface, 0 for the others.
 MRPT_TERRAIN_LANES void weights_within(const RimPoints& points, std::size_t i, double band,
                                        const DoubleLanes& low, DoubleLanes& w) {
-  DoubleLanes weight;
-  load_from(points.weight.data() + i, weight);
-  const DoubleLanes none = weight * 0.0;
-  const DoubleLanes one = none + 1.0;
-  const DoubleLanes not_below = low <= band ? one : none;
-  const DoubleLanes not_above = low >= -kUpperBand * band ? one : none;
-  w = weight * not_below * not_above;
+  const DoubleLanes zero{};
+  load_from(points.weight.data() + i, w);
+  keep_up_to(low, zero + band, w);
+  keep_up_to(zero - kUpperBand * band, low, w);
 }
 
 // Lets the points within the band count. Returns whether they are others than before.

@@ -46,6 +46,30 @@ MRPT_TERRAIN_LANES void take_roots(DoubleLanes& lanes) {
   for (double& value : array.value) value = std::sqrt(value);
   load(array, lanes);
 }
+
+// Comparisons are best written where they select: compilers that do not know the processor yet turn
+// those that are kept in a `MaskLanes`, or combined by `&`, into one comparison per lane. Conditions
+// of several comparisons are therefore flags, 1 or 0.
+MRPT_TERRAIN_LANES void set_flags(DoubleLanes& flags) { flags = DoubleLanes{} + 1.0; }
+/// Leaves a flag only where a < b.
+MRPT_TERRAIN_LANES void keep_less(const DoubleLanes& a, const DoubleLanes& b, DoubleLanes& flags) {
+  const DoubleLanes zero{}, one = zero + 1.0;
+  const DoubleLanes less = a < b ? one : zero;
+  flags = flags * less;
+}
+/// Leaves a flag only where a <= b.
+MRPT_TERRAIN_LANES void keep_up_to(const DoubleLanes& a, const DoubleLanes& b, DoubleLanes& flags) {
+  const DoubleLanes zero{}, one = zero + 1.0;
+  const DoubleLanes up_to = a <= b ? one : zero;
+  flags = flags * up_to;
+}
+MRPT_TERRAIN_LANES bool any_flag(const DoubleLanes& flags) {
+  double lanes[kCellLanes];
+  std::memcpy(lanes, &flags, sizeof(lanes));
+  double any = 0.0;
+  for (const double lane : lanes) any += lane;
+  return any > 0.0;
+}
 MRPT_TERRAIN_LANES bool any_of(const MaskLanes& mask) {
   std::int64_t lanes[kCellLanes];
   std::memcpy(lanes, &mask, sizeof(lanes));

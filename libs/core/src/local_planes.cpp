@@ -163,25 +163,29 @@ MRPT_TERRAIN_LANES void find_smallest_eigenvalue(const Invariants& of, DoubleLan
   constexpr int kMaxSteps = 30;
   const DoubleLanes zero{};
   root = zero;
-  MaskLanes climbs = zero == zero;
+  DoubleLanes climbs;
+  set_flags(climbs);
   for (int k = 0; k < kMaxSteps; ++k) {
     const DoubleLanes value = ((root - of.trace) * root + of.minors) * root - of.determinant;
     const DoubleLanes slope = (3.0 * root - 2.0 * of.trace) * root + of.minors;
-    climbs &= (value < zero) & (slope > zero);
+    keep_less(value, zero, climbs);
+    keep_less(zero, slope, climbs);
     const DoubleLanes step = -value / slope;
-    root = climbs ? root + step : root;
-    climbs &= step > 1e-3 * root;  // convergence is quadratic: 1e-6 is left
-    if (!any_of(climbs)) break;
+    root = climbs > zero ? root + step : root;
+    keep_less(1e-3 * root, step, climbs);  // convergence is quadratic: 1e-6 is left
+    if (!any_flag(climbs)) break;
   }
 }
 
 // Whether the middle eigenvalue is at least `least`, from sum and product of the upper two.
 MRPT_TERRAIN_LANES void middle_eigenvalue_reaches(double least, const Invariants& of,
-                                                  const DoubleLanes& smallest, MaskLanes& reaches) {
+                                                  const DoubleLanes& smallest, DoubleLanes& reaches) {
   const DoubleLanes zero{};
   const DoubleLanes sum = of.trace - smallest;
   const DoubleLanes product = of.minors - smallest * sum;
-  reaches = (sum >= zero + 2.0 * least) & (product - least * sum + least * least >= zero);
+  set_flags(reaches);
+  keep_up_to(zero + 2.0 * least, sum, reaches);
+  keep_up_to(zero, product - least * sum + least * least, reaches);
 }
 
 MRPT_TERRAIN_LANES void cross(const VectorLanes& a, const VectorLanes& b, VectorLanes& c) {
@@ -193,11 +197,10 @@ MRPT_TERRAIN_LANES void cross(const VectorLanes& a, const VectorLanes& b, Vector
 MRPT_TERRAIN_LANES void take_longer(const VectorLanes& other, VectorLanes& best,
                                     DoubleLanes& square) {
   const DoubleLanes other_square = other.x * other.x + (other.y * other.y + other.z * other.z);
-  const MaskLanes longer = other_square > square;
-  best.x = longer ? other.x : best.x;
-  best.y = longer ? other.y : best.y;
-  best.z = longer ? other.z : best.z;
-  square = longer ? other_square : square;
+  best.x = other_square > square ? other.x : best.x;
+  best.y = other_square > square ? other.y : best.y;
+  best.z = other_square > square ? other.z : best.z;
+  square = other_square > square ? other_square : square;
 }
 
 // Eigenvector, of any length and with z >= 0; zero where it is not unique.
@@ -214,19 +217,18 @@ MRPT_TERRAIN_LANES void find_eigenvector(const SymmetricLanes& a, const DoubleLa
   cross(second, third, other);
   take_longer(other, best, square);
   const DoubleLanes zero{};
-  const MaskLanes down = best.z < zero;
-  best.x = down ? -best.x : best.x;
-  best.y = down ? -best.y : best.y;
-  best.z = down ? -best.z : best.z;
+  best.x = best.z < zero ? -best.x : best.x;
+  best.y = best.z < zero ? -best.y : best.y;
+  best.z = best.z < zero ? -best.z : best.z;
 }
 
 MRPT_TERRAIN_LANES void store_gradient(const VectorLanes& normal, WindowLanes& window) {
   const DoubleLanes level2 = normal.x * normal.x + normal.y * normal.y;
   const DoubleLanes upright = kSteepestGradient * normal.z;
-  const MaskLanes steep = level2 > upright * upright;
   DoubleLanes level = level2;
   take_roots(level);
-  const DoubleLanes divisor = steep ? level / kSteepestGradient : normal.z;
+  const DoubleLanes divisor =
+      level2 > upright * upright ? level / kSteepestGradient : normal.z;
   const DoubleLanes scale = -1.0 / divisor;
   store(normal.x * scale, window.gradient_x);
   store(normal.y * scale, window.gradient_y);
@@ -240,7 +242,7 @@ void fit_planes(double least_spread, WindowLanes& window) {
   find_invariants(covariance, invariants);
   DoubleLanes across_plane;
   find_smallest_eigenvalue(invariants, across_plane);
-  MaskLanes spread;
+  DoubleLanes spread;
   middle_eigenvalue_reaches(least_spread, invariants, across_plane, spread);
   VectorLanes normal;
   DoubleLanes square;
@@ -249,7 +251,8 @@ void fit_planes(double least_spread, WindowLanes& window) {
   take_roots(across_plane);
   store(across_plane, window.roughness);
   const DoubleLanes zero{};
-  const MaskLanes on_a_line = ~spread | (square == zero);
+  keep_less(zero, square, spread);
+  const MaskLanes on_a_line = spread == zero;
   std::memcpy(window.on_a_line, &on_a_line, sizeof(on_a_line));
 }
 
