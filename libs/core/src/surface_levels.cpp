@@ -53,75 +53,183 @@ void refine_all(const std::vector<float>& coarse, int n, std::vector<float>& mix
   }
 }
 
-// Weighted differences between low heights and the level, per cell of the level.
-void sum_differences(const GroundSurfaceParams& params, int level,
-                     GroundSurfaceWorkspace& workspace, const GroundSurface& surface) {
-  const SquareLattice& lattice = surface.lattice();
-  const LevelView view = view_of_level(workspace, lattice, level);
-  const auto tolerance = static_cast<float>(params.tolerance);
-  const float bend = static_cast<float>(params.bend) * view.cell_size;
-  const auto rough_bend = static_cast<float>(params.rough_bend);
-  const float below = -static_cast<float>(params.dip) * (tolerance + bend);
-  const auto low_weight = static_cast<float>(params.low_weight);
+// The sums have a frame of one cell on all four sides, so that the eight cells around every cell
+// exist. What is spread into the frame is forgotten.
+std::int32_t stride_of(std::int32_t side) { return side + 2; }
+
+/// How the low height of a cell counts on a level.
+struct LevelRule {
+  float tolerance, bend;     // above the level; bend is that of one of its cells
+  float rough;               // share of `bend` where it is roughest
+  float below;               // the lowest difference that counts
+  float low_weight;          // of differences below the level, over those above
+  float fewest_low;          // points from which on that is so
+  float beside_tall;         // share of `bend` beside something tall
+  float weight_beside_tall;  // of differences above the level there
+
+  LevelRule(const GroundSurfaceParams& params, int level, float cell_size)
+      : tolerance(static_cast<float>(params.tolerance)),
+        bend(static_cast<float>(params.bend) * cell_size),
+        rough(static_cast<float>(params.rough_bend)),
+        below(-static_cast<float>(params.dip) * (tolerance + bend)),
+        low_weight(static_cast<float>(params.low_weight)),
+        fewest_low(level <= kFineLevel ? 0.0F : 2.0F),
+        beside_tall(kBesideTallBend * rough),
+        weight_beside_tall(kBesideTallWeight) {}
+};
+
+// How far the low heights lie above a level, per slot.
+void measure_differences(const GroundSurface& surface, const LevelView& view, int level,
+                         GroundSurfaceWorkspace& workspace) {
+  const std::size_t n = surface.ground.size();
+  const LatticeCell* cell = surface.cells.cell.data();
   const LevelStep* step = workspace.step.data();
-  for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
-    const GroundCell& ground = surface.ground[slot];
-    const LatticeCell cell = surface.cells.cell[slot];
-    const float reference = level == 0 ? view.height[surface.cells.number_of(cell)]
-                                       : view.between(step[cell.row], step[cell.column]).height;
-    const float difference = ground.low - reference;
-    const bool doubtful = level >= kCoarseLevel && workspace.beside_tall[slot] != 0;
-    // What rises and is smooth is a hill, what rises and is rough may be a bush.
-    const float rise =
-        doubtful ? kBesideTallBend * rough_bend : rough_bend + (1.0F - rough_bend) * ground.smooth;
-    const float above = tolerance + bend * rise;
-    if (!(difference <= above && difference >= below)) continue;
-    const bool limits = difference < 0.0F && (ground.points > 1.0F || level <= kFineLevel);
-    const float weight = limits ? low_weight * std::max(ground.weight, kLeastBelow)
-                                : ground.weight * (doubtful ? kBesideTallWeight : 1.0F);
-    const std::int32_t at = (cell.row >> level) * view.side + (cell.column >> level);
-    LevelSums& sums = workspace.level_sums[static_cast<std::size_t>(at)];
-    if (sums.cell_weight == 0.0F) workspace.touched.push_back(at);
-    sums.cell_sum += weight * difference;
-    sums.cell_weight += weight;
+  const float* low = workspace.heard.low.data();
+  float* difference = workspace.difference.data();
+  if (level == 0) {
+    for (std::size_t slot = 0; slot < n; ++slot)
+      difference[slot] = low[slot] - view.height[surface.cells.number_of(cell[slot])];
+    return;
+  }
+  for (std::size_t slot = 0; slot < n; ++slot) {
+    difference[slot] =
+        low[slot] - view.between(step[cell[slot].row], step[cell[slot].column]).height;
   }
 }
 
-// Spreads the sums of a cell over the nine about it.
-void spread(std::int32_t at, int side, float sum, float weight, GroundSurfaceWorkspace& workspace) {
-  const int row = at / side, column = at % side;
-  for (int i = std::max(row - 1, 0); i <= std::min(row + 1, side - 1); ++i) {
-    for (int j = std::max(column - 1, 0); j <= std::min(column + 1, side - 1); ++j) {
-      const float share = (i == row ? 1.0F : 0.5F) * (j == column ? 1.0F : 0.5F);
-      LevelSums& to = workspace.level_sums[static_cast<std::size_t>(i * side + j)];
-      to.sum += share * sum;
-      to.weight += share * weight;
-    }
+// Weights of the differences, 0 out of tolerance. One selection after the other: branches could not
+// be predicted, and so compilers work on many cells at once.
+MRPT_TERRAIN_WIDE_REGISTERS
+void weigh_differences(const LevelRule rule, const HeardCells& heard, const float* difference,
+                       std::size_t n, float* weight) {
+  const float* points = heard.points.data();
+  const float* smooth = heard.smooth.data();
+  const float* own = heard.weight.data();
+  const float* tall = heard.doubtful.data();
+  for (std::size_t slot = 0; slot < n; ++slot) {
+    const float d = difference[slot], w = own[slot];
+    // What rises and is smooth is a hill, what rises and is rough may be a bush.
+    const float hill = rule.rough + (1.0F - rule.rough) * smooth[slot];
+    const float rise = tall[slot] > 0.0F ? rule.beside_tall : hill;
+    const float above = rule.tolerance + rule.bend * rise;
+    const float high = tall[slot] > 0.0F ? w * rule.weight_beside_tall : w;
+    const float low = rule.low_weight * (w < kLeastBelow ? kLeastBelow : w);
+    const float low_or_high = points[slot] >= rule.fewest_low ? low : high;
+    float value = d < 0.0F ? low_or_high : high;
+    value = d <= above ? value : 0.0F;
+    value = d >= rule.below ? value : 0.0F;
+    weight[slot] = value;
   }
+}
+
+// Sums the weighted differences up, per cell of the level.
+void sum_differences(int level, std::int32_t side, const GroundSurface& surface,
+                     GroundSurfaceWorkspace& workspace) {
+  const std::size_t n = surface.ground.size();
+  const std::int32_t stride = stride_of(side);
+  const LatticeCell* cell = surface.cells.cell.data();
+  const float* difference = workspace.difference.data();
+  const float* weight = workspace.weight.data();
+  WeightedSum* sums = workspace.cell_sums.data();
+  std::int32_t* touched = workspace.touched.data();
+  std::size_t count = 0;
+  for (std::size_t slot = 0; slot < n; ++slot) {
+    const std::int32_t at =
+        ((cell[slot].row >> level) + 1) * stride + (cell[slot].column >> level) + 1;
+    WeightedSum& sum = sums[at];
+    touched[count] = at;
+    count += (sum.weight == 0.0F) & (weight[slot] > 0.0F) ? 1U : 0U;
+    sum.sum += weight[slot] * difference[slot];
+    sum.weight += weight[slot];
+  }
+  workspace.touched_cells = count;
+}
+
+// Spreads a sum over the nine cells about one.
+void spread(float value, std::ptrdiff_t stride, float* about) {
+  const float half = 0.5F * value, quarter = 0.25F * value;
+  float* before = about - stride;
+  float* behind = about + stride;
+  before[-1] += quarter;
+  before[0] += half;
+  before[1] += quarter;
+  about[-1] += half;
+  about[0] += value;
+  about[1] += half;
+  behind[-1] += quarter;
+  behind[0] += half;
+  behind[1] += quarter;
+}
+
+// Adds the mean differences to a part of a row of the level and leaves their sums zero.
+MRPT_TERRAIN_WIDE_REGISTERS
+void add_means(float* sum, float* weight, int n, float hold, float* level) {
+  for (int i = 0; i < n; ++i) {
+    level[i] += sum[i] / (weight[i] + hold);
+    sum[i] = 0.0F;
+    weight[i] = 0.0F;
+  }
+}
+
+// Forgets what was spread beyond the edges.
+void clear_frame(std::int32_t side, float* sums) {
+  const std::int32_t stride = stride_of(side);
+  std::fill_n(sums, stride, 0.0F);
+  std::fill_n(sums + static_cast<std::ptrdiff_t>(stride - 1) * stride, stride, 0.0F);
+  for (std::ptrdiff_t row = 1; row <= side; ++row)
+    sums[row * stride] = sums[row * stride + stride - 1] = 0.0F;
 }
 
 // Adds the mean differences to the level and leaves all sums zero.
-void apply_differences(float hold, int side, GroundSurfaceWorkspace& workspace,
+void apply_differences(float hold, std::int32_t side, GroundSurfaceWorkspace& workspace,
                        std::vector<float>& level) {
-  for (const std::int32_t at : workspace.touched) {
-    LevelSums& from = workspace.level_sums[static_cast<std::size_t>(at)];
-    const float scale = std::min(from.cell_weight, kMostCells) / from.cell_weight;
-    spread(at, side, scale * from.cell_sum, scale * from.cell_weight, workspace);
-    from.cell_sum = from.cell_weight = 0.0F;
+  const std::int32_t stride = stride_of(side);
+  float* sum = workspace.spread_sum.data();
+  float* weight = workspace.spread_weight.data();
+  // Of every row of the sums, from where to where there are any.
+  std::vector<ColumnRange>& ranges = workspace.ranges;
+  ranges.assign(static_cast<std::size_t>(stride), {side, -1});
+  for (std::size_t k = 0; k < workspace.touched_cells; ++k) {
+    const std::int32_t at = workspace.touched[k];
+    WeightedSum& from = workspace.cell_sums[static_cast<std::size_t>(at)];
+    const float scale = std::min(from.weight, kMostCells) / from.weight;
+    spread(scale * from.sum, stride, sum + at);
+    spread(scale * from.weight, stride, weight + at);
+    from = {};
+    ranges[static_cast<std::size_t>(at / stride)].include(at % stride - 1);
   }
-  for (const std::int32_t at : workspace.touched) {
-    const int row = at / side, column = at % side;
-    for (int i = std::max(row - 1, 0); i <= std::min(row + 1, side - 1); ++i) {
-      for (int j = std::max(column - 1, 0); j <= std::min(column + 1, side - 1); ++j) {
-        const auto to = static_cast<std::size_t>(i * side + j);
-        LevelSums& sums = workspace.level_sums[to];
-        if (sums.weight == 0.0F) continue;
-        level[to] += sums.sum / (sums.weight + hold);
-        sums.sum = sums.weight = 0.0F;
-      }
-    }
+  for (std::int32_t row = 0; row < side; ++row) {
+    // Sums are spread over the rows and columns beside.
+    ColumnRange range = ranges[static_cast<std::size_t>(row + 1)];
+    range.include(ranges[static_cast<std::size_t>(row)]);
+    range.include(ranges[static_cast<std::size_t>(row + 2)]);
+    if (range.last < range.first) continue;
+    const std::int32_t first = std::max(range.first - 1, 0);
+    const std::int32_t last = std::min(range.last + 1, side - 1);
+    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row + 1) * stride + first + 1;
+    add_means(sum + at, weight + at, last - first + 1, hold,
+              level.data() + static_cast<std::ptrdiff_t>(row) * side + first);
   }
-  workspace.touched.clear();
+  clear_frame(side, sum);
+  clear_frame(side, weight);
+}
+
+// What the cells say of the ground, as vectors of numbers.
+void hear_cells(const GroundSurface& surface, int level, GroundSurfaceWorkspace& workspace) {
+  const std::size_t n = surface.ground.size();
+  HeardCells& heard = workspace.heard;
+  for (auto* values : {&heard.low, &heard.points, &heard.smooth, &heard.weight, &heard.doubtful,
+                       &workspace.difference, &workspace.weight})
+    values->resize(n);
+  workspace.touched.resize(n + 1);
+  for (std::size_t slot = 0; slot < n; ++slot) {
+    const GroundCell& ground = surface.ground[slot];
+    heard.low[slot] = ground.low;
+    heard.points[slot] = ground.points;
+    heard.smooth[slot] = ground.smooth;
+    heard.weight[slot] = ground.weight;
+    heard.doubtful[slot] = level >= kCoarseLevel && workspace.beside_tall[slot] != 0 ? 1.0F : 0.0F;
+  }
 }
 
 }  // namespace
@@ -134,7 +242,9 @@ LevelView view_of_level(const GroundSurfaceWorkspace& workspace, const SquareLat
 
 void start_levels(const GroundSurface& surface, GroundSurfaceWorkspace& workspace) {
   const SquareLattice& lattice = surface.lattice();
-  workspace.level_sums.resize(lattice.size());
+  const auto stride = static_cast<std::size_t>(stride_of(lattice.side));
+  workspace.cell_sums.resize(stride * stride);
+  for (auto* sums : {&workspace.spread_sum, &workspace.spread_weight}) sums->resize(stride * stride);
   const SquareLattice top{side_of(lattice, kTop),
                           lattice.cell_size * static_cast<float>(1 << kTop)};
   std::vector<float>& height = workspace.level[kTop];
@@ -161,9 +271,13 @@ void correct_level(const GroundSurfaceParams& params, int level, GroundSurfaceWo
   workspace.step.resize(static_cast<std::size_t>(surface.lattice().side));
   for (std::int32_t index = 0; index < surface.lattice().side; ++index)
     workspace.step[static_cast<std::size_t>(index)] = view.step_of(index, level);
+  hear_cells(surface, level, workspace);
   for (int pass = 0; pass < corrections(level); ++pass) {
-    sum_differences(params, level, workspace, surface);
-    apply_differences(static_cast<float>(params.hold), side_of(surface.lattice(), level), workspace,
+    measure_differences(surface, view, level, workspace);
+    weigh_differences(LevelRule(params, level, view.cell_size), workspace.heard,
+                      workspace.difference.data(), surface.ground.size(), workspace.weight.data());
+    sum_differences(level, view.side, surface, workspace);
+    apply_differences(static_cast<float>(params.hold), view.side, workspace,
                       workspace.level[static_cast<std::size_t>(level)]);
   }
 }

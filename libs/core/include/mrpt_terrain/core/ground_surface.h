@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -100,10 +101,29 @@ struct GroundSurface {
 /// Levels of the reference; each has cells twice as large as those of the one below it.
 inline constexpr int kSurfaceLevels = 7;
 
-/// Weighted sums of differences between low heights and a level.
-struct LevelSums {
-  float sum = 0.0F, weight = 0.0F;            ///< of the cell and, less, of those around it
-  float cell_sum = 0.0F, cell_weight = 0.0F;  ///< of the cell alone
+/// Weighted sum of differences between low heights and a level.
+struct WeightedSum {
+  float sum = 0.0F, weight = 0.0F;
+};
+
+/// Columns of a row, first to last; none where `last < first`.
+struct ColumnRange {
+  std::int32_t first, last;
+
+  void include(std::int32_t column) {
+    first = std::min(first, column);
+    last = std::max(last, column);
+  }
+  void include(const ColumnRange& other) {
+    first = std::min(first, other.first);
+    last = std::max(last, other.last);
+  }
+};
+
+/// What the cells say of the ground, as a level hears it; entries per slot as in `GroundCell`.
+struct HeardCells {
+  std::vector<float> low, points, smooth, weight;
+  std::vector<float> doubtful;  ///< 1 beside something tall, where the level minds
 };
 
 /// Between which two centres of a level the centre of a cell lies, and how far towards the second.
@@ -122,9 +142,16 @@ struct GroundSurfaceWorkspace {
   std::vector<float> even;                           ///< per slot: smoothness by roughness alone
   std::vector<float> firm;  ///< per slot: smoothness by scatter along the beams
   std::array<std::vector<float>, kSurfaceLevels> level;  ///< heights at the centres of cells
-  std::vector<LevelStep> step;                           ///< per row, or column, of the lattice
-  std::vector<LevelSums> level_sums;                     ///< per cell of a level
-  std::vector<std::int32_t> touched;                     ///< cells of a level
+  std::vector<LevelStep> step;  ///< per row, or column, of the lattice
+  HeardCells heard;
+  std::vector<float> difference, weight;  ///< per slot: low height less the level, how it counts
+  /// Per cell of a level and of a frame about it, all zero between levels: sums of the cell alone,
+  /// and of it and, less, those around it.
+  std::vector<WeightedSum> cell_sums;
+  std::vector<float> spread_sum, spread_weight;
+  std::vector<std::int32_t> touched;  ///< the first `touched_cells`: where `cell_sums` are not 0
+  std::size_t touched_cells = 0;
+  std::vector<ColumnRange> ranges;  ///< per row of the sums
   std::vector<float> mixed;         ///< for a moment: a row, shares or tolerances
   std::vector<float> share, count;  ///< per cell of level 4
   std::vector<float> candidate_x, candidate_y, candidate_z;  ///< for the plane
