@@ -2,6 +2,9 @@
 #include "mrpt_terrain/core/cell_points.h"
 
 #include <cmath>
+#include <limits>
+
+#include "wide_registers.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -19,15 +22,26 @@ void prepare(const SquareLattice& lattice, CellPointsWorkspace& workspace, CellP
   result.first.clear();
 }
 
-void count_points(const PointsView scan, const SquareLattice lattice,
-                  CellPointsWorkspace& workspace) {
-  workspace.cell_of.resize(scan.size);
-  std::int32_t* cell_of = workspace.cell_of.data();
-  std::int32_t* count = workspace.count.data();
+// The cell of every point, -1 for points that are left out: `SquareLattice::cell_at` without
+// branches, so that compilers work on many points at once.
+MRPT_TERRAIN_WIDE_REGISTERS
+void find_cells(const PointsView scan, const SquareLattice lattice, std::int32_t* cell_of) {
+  const float half = 0.5F * static_cast<float>(lattice.side);
+  const float per_metre = 1.0F / lattice.cell_size;
+  const auto end = static_cast<float>(lattice.side);
   for (std::size_t i = 0; i < scan.size; ++i) {
-    std::int32_t cell = lattice.cell_at(scan.x[i], scan.y[i]);
-    if (!std::isfinite(scan.z[i])) cell = -1;
-    cell_of[i] = cell;
+    const float l = scan.x[i] * per_metre + half;
+    const float w = scan.y[i] * per_metre + half;
+    const bool finite = std::abs(scan.z[i]) <= std::numeric_limits<float>::max();
+    const bool inside = (l >= 0.0F) & (l < end) & (w >= 0.0F) & (w < end) & finite;
+    const auto row = static_cast<std::int32_t>(inside ? l : 0.0F);
+    const auto column = static_cast<std::int32_t>(inside ? w : 0.0F);
+    cell_of[i] = inside ? row * lattice.side + column : -1;
+  }
+}
+
+void count_points(const std::vector<std::int32_t>& cell_of, std::int32_t* count) {
+  for (const std::int32_t cell : cell_of) {
     if (cell >= 0) ++count[cell];
   }
 }
@@ -56,7 +70,9 @@ std::int32_t number_cells(std::vector<std::int32_t>& count, CellPoints& result) 
 void sort_into_cells(const PointsView& scan, const SquareLattice& lattice,
                      CellPointsWorkspace& workspace, CellPoints& result) {
   prepare(lattice, workspace, result);
-  count_points(scan, lattice, workspace);
+  workspace.cell_of.resize(scan.size);
+  find_cells(scan, lattice, workspace.cell_of.data());
+  count_points(workspace.cell_of, workspace.count.data());
   const auto points = static_cast<std::size_t>(number_cells(workspace.count, result));
   result.points.resize(points);
   std::int32_t* next = workspace.count.data();

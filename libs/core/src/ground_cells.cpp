@@ -27,24 +27,17 @@ constexpr int kRoughLevel = 4;
 // Levels that weights are for: those of raw low heights, and the finer ones.
 enum class Levels { kCoarse, kFine };
 
-// Heights of the points of a cell above some reference, which is linear in it.
-struct Heights {
+/// The points of a cell.
+struct PointsOfCell {
   const CellPoint* first;
   const CellPoint* last;
   float centre_x, centre_y;
-  LevelView::Linear reference;
-
-  [[nodiscard]] float of(const CellPoint& point) const {
-    return point.z - reference.height - reference.gradient_x * (point.x - centre_x) -
-           reference.gradient_y * (point.y - centre_y);
-  }
 };
 
-Heights heights_in(const CellPoints& cells, std::size_t slot, const LevelView::Linear& reference) {
+PointsOfCell points_in(const CellPoints& cells, std::size_t slot) {
   const CellPoint* points = cells.points.data();
   return {points + cells.first[slot], points + cells.first[slot + 1],
-          cells.lattice.centre(cells.cell[slot].row), cells.lattice.centre(cells.cell[slot].column),
-          reference};
+          cells.lattice.centre(cells.cell[slot].row), cells.lattice.centre(cells.cell[slot].column)};
 }
 
 struct LowBand {
@@ -53,31 +46,52 @@ struct LowBand {
   float share;  // of the band's points, those above it counted `kHighPointWeight` times
 };
 
-LowBand low_band_of(const Heights& heights, float band) {
-  float lowest = std::numeric_limits<float>::max();
-  for (const CellPoint* p = heights.first; p != heights.last; ++p)
-    lowest = std::min(lowest, heights.of(*p));
+/// Counts points by their height above the lowest. Without branches: which are low cannot be
+/// predicted.
+struct BandCounts {
+  float band;
   float sum = 0.0F, low = 0.0F, high = 0.0F;
-  for (const CellPoint* p = heights.first; p != heights.last; ++p) {
-    const float above = heights.of(*p) - lowest;
+
+  void add(float above) {
     const float in_band = above <= band ? 1.0F : 0.0F;
     low += in_band;
     sum += in_band * above;
-    high += above > band && above < kHighPart ? 1.0F : 0.0F;
+    high += (above > band) & (above < kHighPart) ? 1.0F : 0.0F;
   }
-  return {lowest, lowest + sum / low, low, low / (low + kHighPointWeight * high)};
+  [[nodiscard]] LowBand over(float lowest) const {
+    return {lowest, lowest + sum / low, low, low / (low + kHighPointWeight * high)};
+  }
+};
+
+// The low band of a cell, and the sums of its points up to `low_part` above the lowest.
+LowBand measure_points(const PointsOfCell& cell, float band, float low_part, HeightSums& sums) {
+  float lowest = std::numeric_limits<float>::max();
+  for (const CellPoint* p = cell.first; p != cell.last; ++p) lowest = std::min(lowest, p->z);
+  BandCounts counts{band};
+  sums = {};
+  const float top = lowest + low_part;
+  for (const CellPoint* p = cell.first; p != cell.last; ++p) {
+    counts.add(p->z - lowest);
+    const float counted = p->z <= top ? 1.0F : 0.0F;
+    sums.add_weighted(p->x - cell.centre_x, p->y - cell.centre_y, p->z, counted);
+  }
+  return counts.over(lowest);
 }
 
-HeightSums low_sums_of(const Heights& heights, float top) {
-  HeightSums sums;
-  for (const CellPoint* p = heights.first; p != heights.last; ++p) {
-    const float z = p->z;
-    if (z > top) continue;
-    const float x = p->x - heights.centre_x;
-    const float y = p->y - heights.centre_y;
-    sums.add(x, y, z);
+// The low band of a cell, heights taken above a reference that is linear in it.
+LowBand measure_above(const PointsOfCell& cell, const LevelView::Linear& reference, float band,
+                      float* height) {
+  float lowest = std::numeric_limits<float>::max();
+  const auto n = static_cast<std::size_t>(cell.last - cell.first);
+  for (std::size_t i = 0; i < n; ++i) {
+    const CellPoint& p = cell.first[i];
+    height[i] = p.z - reference.height - reference.gradient_x * (p.x - cell.centre_x) -
+                reference.gradient_y * (p.y - cell.centre_y);
+    lowest = std::min(lowest, height[i]);
   }
-  return sums;
+  BandCounts counts{band};
+  for (std::size_t i = 0; i < n; ++i) counts.add(height[i] - lowest);
+  return counts.over(lowest);
 }
 
 // Variance across the plane of the points, by one over the trace of the inverse covariance: it is
@@ -223,10 +237,11 @@ void measure_ground_cells(const BeamOrigins& origins, const GroundSurfaceParams&
   workspace.sums.resize(cells.occupied());
   for (auto* values : {&workspace.part, &workspace.even, &workspace.firm})
     values->resize(cells.occupied());
+  const auto low_band = static_cast<float>(params.low_band);
+  const auto low_part = static_cast<float>(params.low_part);
   for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
-    const Heights heights = heights_in(cells, slot, {});
-    const LowBand band = low_band_of(heights, static_cast<float>(params.low_band));
-    workspace.sums[slot] = low_sums_of(heights, band.lowest + static_cast<float>(params.low_part));
+    const LowBand band =
+        measure_points(points_in(cells, slot), low_band, low_part, workspace.sums[slot]);
     workspace.part[slot] = band.share;
     surface.ground[slot].low = band.mean;
     surface.ground[slot].points = band.points;
@@ -239,11 +254,14 @@ void measure_above_level(const GroundSurfaceParams& params, int level,
                          GroundSurfaceWorkspace& workspace, GroundSurface& surface) {
   const CellPoints& cells = surface.cells;
   const LevelView view = view_of_level(workspace, cells.lattice, level);
+  const auto low_band = static_cast<float>(params.low_band);
+  surface.height.resize(cells.points.size());
   for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
-    const Heights heights = heights_in(cells, slot, view.at_cell(cells.cell[slot], level));
-    const LowBand band = low_band_of(heights, static_cast<float>(params.low_band));
+    const LevelView::Linear reference = view.at_cell(cells.cell[slot], level);
+    const LowBand band = measure_above(points_in(cells, slot), reference, low_band,
+                                       surface.height.data() + cells.first[slot]);
     workspace.part[slot] = band.share;
-    surface.ground[slot].low = heights.reference.height + band.mean;
+    surface.ground[slot].low = reference.height + band.mean;
     surface.ground[slot].points = band.points;
   }
   set_weights(params, Levels::kFine, workspace, surface);

@@ -23,6 +23,21 @@ struct HeightSums {
     zz += pz * pz;
   }
 
+  /// Adds a point that counts `weight` times.
+  void add_weighted(float px, float py, float pz, float weight) {
+    const float wx = weight * px, wy = weight * py, wz = weight * pz;
+    n += weight;
+    x += wx;
+    y += wy;
+    z += wz;
+    xx += wx * px;
+    xy += wx * py;
+    yy += wy * py;
+    xz += wx * pz;
+    yz += wy * pz;
+    zz += wz * pz;
+  }
+
   /// Adds sums whose centre lies at (dx, dy, dz) from this one.
   void add_shifted(const HeightSums& from, float dx, float dy, float dz) {
     const float fx = from.x + from.n * dx, fy = from.y + from.n * dy, fz = from.z + from.n * dz;
