@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "nine_cells.h"
 #include "surface_levels.h"
 
 namespace mrpt_terrain {
@@ -109,20 +110,13 @@ float variance_across(const HeightSums& s) {
 // Points of the nine cells about a slot, heights from its own mean.
 HeightSums sums_around(const CellPoints& cells, const std::vector<HeightSums>& sums,
                        std::size_t slot) {
-  const SquareLattice& lattice = cells.lattice;
-  const auto [row, column] = cells.cell[slot];
   const float z = sums[slot].z / sums[slot].n;
+  const float size = cells.lattice.cell_size;
   HeightSums around;
-  for (std::int32_t i = std::max(row - 1, 0); i <= std::min(row + 1, lattice.side - 1); ++i) {
-    for (std::int32_t j = std::max(column - 1, 0); j <= std::min(column + 1, lattice.side - 1);
-         ++j) {
-      const std::int32_t other = cells.slot_of[static_cast<std::size_t>(i * lattice.side + j)];
-      if (other < 0) continue;
-      around.add_shifted(sums[static_cast<std::size_t>(other)],
-                         static_cast<float>(i - row) * lattice.cell_size,
-                         static_cast<float>(j - column) * lattice.cell_size, -z);
-    }
-  }
+  for_nine_cells(cells, slot, [&](std::int32_t row, std::int32_t column, std::size_t other) {
+    around.add_shifted(sums[other], static_cast<float>(row) * size,
+                       static_cast<float>(column) * size, -z);
+  });
   return around;
 }
 
@@ -234,7 +228,8 @@ void measure_ground_cells(const BeamOrigins& origins, const GroundSurfaceParams&
                           GroundSurfaceWorkspace& workspace, GroundSurface& surface) {
   const CellPoints& cells = surface.cells;
   surface.ground.resize(cells.occupied());
-  workspace.sums.resize(cells.occupied());
+  workspace.sums.resize(cells.occupied() + 1);
+  workspace.sums.back() = {};  // of empty cells
   for (auto* values : {&workspace.part, &workspace.even, &workspace.firm})
     values->resize(cells.occupied());
   const auto low_band = static_cast<float>(params.low_band);

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nine_cells.h"
+#include "wide_registers.h"
+
 namespace mrpt_terrain {
 namespace {
 
@@ -24,28 +27,21 @@ HeightCounts count_heights(const float* height, std::size_t points) {
     const float ground = std::abs(h) < kGroundBand ? 1.0F : 0.0F;
     counts.ground += ground;
     counts.squares += ground * h * h;
-    counts.object += h > kObjectLow && h < kObjectHigh ? 1.0F : 0.0F;
+    counts.object += (h > kObjectLow) & (h < kObjectHigh) ? 1.0F : 0.0F;
   }
   return counts;
 }
 
 HeightCounts counts_around(const CellPoints& cells, const std::vector<HeightCounts>& counts,
                            std::size_t slot) {
-  const SquareLattice& lattice = cells.lattice;
-  const auto [row, column] = cells.cell[slot];
   HeightCounts around;
-  for (std::int32_t i = std::max(row - 1, 0); i <= std::min(row + 1, lattice.side - 1); ++i) {
-    for (std::int32_t j = std::max(column - 1, 0); j <= std::min(column + 1, lattice.side - 1);
-         ++j) {
-      const std::int32_t other = cells.slot_of[static_cast<std::size_t>(i * lattice.side + j)];
-      if (other < 0) continue;
-      const HeightCounts& from = counts[static_cast<std::size_t>(other)];
-      const float share = i == row && j == column ? 1.0F : kNeighbourShare;
-      around.ground += share * from.ground;
-      around.squares += share * from.squares;
-      around.object += share * from.object;
-    }
-  }
+  for_nine_cells(cells, slot, [&](std::int32_t row, std::int32_t column, std::size_t other) {
+    const HeightCounts& from = counts[other];
+    const float share = row == 0 && column == 0 ? 1.0F : kNeighbourShare;
+    around.ground += share * from.ground;
+    around.squares += share * from.squares;
+    around.object += share * from.object;
+  });
   return around;
 }
 
@@ -65,13 +61,26 @@ float threshold_of(const HeightCounts& counts, const GroundLabelParams& params, 
   return std::min(most, std::max(height, static_cast<float>(params.least)));
 }
 
+// One selection after the other, without branches: which points are ground cannot be predicted.
+MRPT_TERRAIN_WIDE_REGISTERS
+void label_points(const float* height, const std::int32_t* first, const float* threshold,
+                  std::size_t slots, float below, Support* support) {
+  for (std::size_t slot = 0; slot < slots; ++slot) {
+    for (std::int32_t i = first[slot]; i < first[slot + 1]; ++i) {
+      const Support on_or_above = height[i] <= threshold[slot] ? Support::kGround : Support::kAbove;
+      support[i] = height[i] < below ? Support::kBelow : on_or_above;
+    }
+  }
+}
+
 }  // namespace
 
 void label_by_height(const GroundSurface& surface, const GroundLabelParams& params,
                      GroundLabelWorkspace& workspace, std::vector<float>& threshold,
                      std::vector<Support>& support) {
   const CellPoints& cells = surface.cells;
-  workspace.counts.resize(cells.occupied());
+  workspace.counts.resize(cells.occupied() + 1);
+  workspace.counts.back() = {};  // of empty cells
   threshold.resize(cells.occupied());
   support.resize(surface.height.size());
   const auto first_of = [&cells](std::size_t slot) {
@@ -81,20 +90,15 @@ void label_by_height(const GroundSurface& surface, const GroundLabelParams& para
     workspace.counts[slot] =
         count_heights(surface.height.data() + first_of(slot), first_of(slot + 1) - first_of(slot));
   }
-  const auto below = -static_cast<float>(params.below);
   for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
     const float x = cells.lattice.centre(cells.cell[slot].row);
     const float y = cells.lattice.centre(cells.cell[slot].column);
     const float most = static_cast<float>(params.most) +
                        static_cast<float>(params.growth) * std::sqrt(x * x + y * y);
     threshold[slot] = threshold_of(counts_around(cells, workspace.counts, slot), params, most);
-    for (std::size_t i = first_of(slot); i < first_of(slot + 1); ++i) {
-      const float height = surface.height[i];
-      support[i] = height < below              ? Support::kBelow
-                   : height <= threshold[slot] ? Support::kGround
-                                               : Support::kAbove;
-    }
   }
+  label_points(surface.height.data(), cells.first.data(), threshold.data(), cells.occupied(),
+               -static_cast<float>(params.below), support.data());
 }
 
 }  // namespace mrpt_terrain
