@@ -83,12 +83,16 @@ struct DeckSearch {
   }
 };
 
-void choose_candidates(const GroundSegmentation& ground, const DeckParams& params,
-                       const FieldCells& cells, DeckWorkspace& workspace) {
+void choose_candidates(const ElevationGrid& grid, const GroundSegmentation& ground,
+                       const DeckParams& params, const FieldCells& cells,
+                       DeckWorkspace& workspace) {
+  workspace.candidate_cells.clear(grid.geometry);
   for (std::size_t slot = 0; slot < cells.size(); ++slot) {
     const bool thin = cells.high[slot] - cells.low[slot] <= static_cast<float>(params.thickness) ||
                       cells.high[slot] <= static_cast<float>(params.curb_height);
-    workspace.candidate[slot] = ground.rule[slot] == GroundRule::kHigh && thin ? 1 : 0;
+    const bool candidate = ground.rule[slot] == GroundRule::kHigh && thin;
+    workspace.candidate[slot] = candidate ? 1 : 0;
+    if (candidate) workspace.candidate_cells.mark(grid.geometry.index_of(grid.cell[slot]));
   }
 }
 
@@ -111,15 +115,21 @@ void measure_layers(const PointsView& scan, const FieldPoints& points,
 }
 
 void collect_members(const DeckSearch& search, std::size_t first) {
+  const ElevationGrid& grid = search.grid;
   DeckWorkspace& workspace = search.workspace;
-  workspace.members.assign(1, static_cast<std::int32_t>(first));
-  workspace.candidate[first] = 0;
+  const auto take = [&](CellIndex cell, std::size_t slot) {
+    workspace.candidate[slot] = 0;
+    workspace.candidate_cells.unmark(cell);
+    workspace.members.push_back(static_cast<std::int32_t>(slot));
+  };
+  workspace.members.clear();
+  take(grid.geometry.index_of(grid.cell[first]), first);
   for (std::size_t next = 0; next < workspace.members.size(); ++next) {
     const auto slot = static_cast<std::size_t>(workspace.members[next]);
-    search.visit_around(slot, kReach, [&](std::size_t other) {
-      if (workspace.candidate[other] == 0 || !search.connected(slot, other)) return;
-      workspace.candidate[other] = 0;
-      workspace.members.push_back(static_cast<std::int32_t>(other));
+    const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
+    workspace.candidate_cells.for_marked_around(at, kReach, [&](CellIndex cell) {
+      const auto other = static_cast<std::size_t>(grid.slot_at(cell));
+      if (search.connected(slot, other)) take(cell, other);
     });
   }
 }
@@ -381,7 +391,7 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
   workspace.number.assign(n, -1);
   cells.deck.assign(n, -1);
   cells.deck_plane.resize(n);
-  choose_candidates(ground, params, cells, workspace);
+  choose_candidates(grid, ground, params, cells, workspace);
   measure_layers(scan.points, points, point_slots, cells, workspace);
   const DeckSearch search{grid, cells, params, workspace,
                           static_cast<float>(std::tan(params.max_slope))};

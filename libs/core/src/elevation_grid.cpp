@@ -7,6 +7,8 @@
 #include <cstring>
 #include <limits>
 
+#include "wide_registers.h"
+
 namespace mrpt_terrain {
 namespace {
 
@@ -30,24 +32,29 @@ void count(UnknownReason reason, ProjectionCounts& counts) {
   }
 }
 
-// Leaves the CellId of each point, or the code of its reason, in `point_slots`. Views and geometry
+// Leaves the CellId of each point in `point_slots`, -1 for points without one. Views and geometry
 // are copies so that the compiler can keep them in registers: a store to the results could change
 // what a reference leads to.
-ProjectionCounts project(const PointsView points, const float* heights, const GridParams& params,
-                         const GridGeometry geometry, std::uint8_t* hit,
-                         std::int32_t* point_slots) {
+MRPT_TERRAIN_WIDE_REGISTERS
+void find_cells(const PointsView points, const float* heights, const float max_height,
+                const GridGeometry geometry, std::int32_t* point_slots) {
   constexpr float kLowest = std::numeric_limits<float>::lowest();
-  const auto max_height = static_cast<float>(params.max_height);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const bool wanted = (heights[i] < max_height) & (heights[i] >= kLowest);
+    point_slots[i] = geometry.number_at(points.x[i], points.y[i], wanted);
+  }
+}
+
+// Marks the cells that were hit; points without a cell get the code of their reason.
+ProjectionCounts mark_hits(const PointsView points, const float* heights, const float max_height,
+                           std::uint8_t* hit, std::int32_t* point_slots) {
   ProjectionCounts counts;
   for (std::size_t i = 0; i < points.size; ++i) {
-    const float z = heights[i];
-    CellIndex cell;
-    if (z < max_height && z >= kLowest && geometry.cell_at(points.x[i], points.y[i], cell)) {
-      const std::int32_t id = value_of(geometry.id_of(cell));
+    const std::int32_t id = point_slots[i];
+    if (id >= 0) {
       hit[id] = 1;
-      point_slots[i] = id;
     } else {
-      const UnknownReason reason = reason_for(points.x[i], points.y[i], z, max_height);
+      const UnknownReason reason = reason_for(points.x[i], points.y[i], heights[i], max_height);
       count(reason, counts);
       point_slots[i] = point_slot_of(reason);
     }
@@ -152,8 +159,11 @@ ProjectionCounts build_elevation_grid(const PointsView& points, const GridParams
   // Read eight at a time and left empty by number_observed_cells.
   workspace.hit.resize((grid.slot_of.size() + 7) / 8 * 8);
   point_slots.resize(points.size);
-  const ProjectionCounts counts = project(points, heights == nullptr ? points.z : heights, params,
-                                          grid.geometry, workspace.hit.data(), point_slots.data());
+  if (heights == nullptr) heights = points.z;
+  const auto max_height = static_cast<float>(params.max_height);
+  find_cells(points, heights, max_height, grid.geometry, point_slots.data());
+  const ProjectionCounts counts =
+      mark_hits(points, heights, max_height, workspace.hit.data(), point_slots.data());
   number_observed_cells(workspace.hit, grid);
   replace_cells_by_slots(grid.slot_of.data(), point_slots);
   grid.h_min.assign(grid.observed(), std::numeric_limits<float>::max());

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "wide_registers.h"
+
 namespace mrpt_terrain {
 namespace {
 
@@ -15,33 +17,40 @@ double cross(const Position2& o, const Position2& a, const Position2& b) {
   return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
 }
 
-// Extreme points in eight directions, counter-clockwise.
-std::array<Position2, 8> extremes(const PointsView& points, IndexRange members) {
-  constexpr std::array<std::array<double, 2>, 8> kDirections{
-      {{{1, 0}}, {{1, 1}}, {{0, 1}}, {{-1, 1}}, {{-1, 0}}, {{-1, -1}}, {{0, -1}}, {{1, -1}}}};
-  std::array<Position2, 8> result;
+/// Extreme points in eight directions, counter-clockwise.
+using Octagon = std::array<Position2, 8>;
+
+Octagon extremes(const OrientedBoxWorkspace& workspace, std::size_t n) {
+  Octagon result;
   std::array<double, 8> best;
   best.fill(std::numeric_limits<double>::lowest());
-  for (const std::int32_t item : members) {
-    const auto i = static_cast<std::size_t>(item);
-    const Position2 p{static_cast<double>(points.x[i]), static_cast<double>(points.y[i])};
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = workspace.x[i], y = workspace.y[i];
+    const double sum = x + y, difference = y - x;
+    const std::array<double, 8> along{x, sum, y, difference, -x, -sum, -y, -difference};
     for (std::size_t k = 0; k < 8; ++k) {
-      const double along = kDirections[k][0] * p.x + kDirections[k][1] * p.y;
-      if (along <= best[k]) continue;
-      best[k] = along;
-      result[k] = p;
+      if (along[k] <= best[k]) continue;
+      best[k] = along[k];
+      result[k] = {x, y};
     }
   }
   return result;
 }
 
-bool is_inside(const std::array<Position2, 8>& octagon, const Position2& p) {
+// Least cross product of the edges of the octagon and the places: positive inside.
+MRPT_TERRAIN_WIDE_REGISTERS
+void find_inside(const Octagon& octagon, const double* x, const double* y, std::size_t n,
+                 double* inside) {
+  std::fill_n(inside, n, std::numeric_limits<double>::max());
   for (std::size_t k = 0; k < 8; ++k) {
-    if (cross(octagon[k], octagon[(k + 1) % 8], p) <= 0.0 &&
-        !(octagon[k].x == octagon[(k + 1) % 8].x && octagon[k].y == octagon[(k + 1) % 8].y))
-      return false;
+    const Position2 o = octagon[k], a = octagon[(k + 1) % 8];
+    if (o.x == a.x && o.y == a.y) continue;
+    const double dx = a.x - o.x, dy = a.y - o.y;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double cross = dx * (y[i] - o.y) - dy * (x[i] - o.x);
+      inside[i] = cross < inside[i] ? cross : inside[i];
+    }
   }
-  return true;
 }
 
 // Andrew's monotone chain, counter-clockwise; no three points in a row on a line.
@@ -96,15 +105,22 @@ OrientedBox box_around(const PointsView& points, IndexRange members,
                        OrientedBoxWorkspace& workspace) {
   OrientedBox best;
   if (members.size() == 0) return best;
-  const std::array<Position2, 8> octagon = extremes(points, members);
-  workspace.candidates.assign(octagon.begin(), octagon.end());
+  const std::size_t n = members.size();
+  for (auto* values : {&workspace.x, &workspace.y, &workspace.inside}) values->resize(n);
   float low = std::numeric_limits<float>::max(), high = std::numeric_limits<float>::lowest();
+  std::size_t next = 0;
   for (const std::int32_t item : members) {
     const auto i = static_cast<std::size_t>(item);
+    workspace.x[next] = static_cast<double>(points.x[i]);
+    workspace.y[next++] = static_cast<double>(points.y[i]);
     low = std::min(low, points.z[i]);
     high = std::max(high, points.z[i]);
-    const Position2 p{static_cast<double>(points.x[i]), static_cast<double>(points.y[i])};
-    if (!is_inside(octagon, p)) workspace.candidates.push_back(p);
+  }
+  const Octagon octagon = extremes(workspace, n);
+  find_inside(octagon, workspace.x.data(), workspace.y.data(), n, workspace.inside.data());
+  workspace.candidates.assign(octagon.begin(), octagon.end());
+  for (std::size_t i = 0; i < n; ++i) {
+    if (workspace.inside[i] <= 0.0) workspace.candidates.push_back({workspace.x[i], workspace.y[i]});
   }
   find_hull(workspace.candidates, workspace.hull);
   const std::vector<Position2>& hull = workspace.hull;

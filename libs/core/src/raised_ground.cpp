@@ -66,6 +66,13 @@ void sum_ground(const PointsView& points, const FieldPoints& field, const PointS
   }
 }
 
+void find_blocks(const ElevationGrid& grid, const Blocks& blocks,
+                 std::vector<std::int32_t>& block) {
+  block.resize(grid.observed());
+  for (std::size_t slot = 0; slot < grid.observed(); ++slot)
+    block[slot] = static_cast<std::int32_t>(blocks.of(grid.geometry.index_of(grid.cell[slot])));
+}
+
 // Counting sort of the cells' mean points.
 void sort_samples(const ElevationGrid& grid, const GroundSegmentation& ground, const Blocks& blocks,
                   RaisedGroundWorkspace& workspace) {
@@ -74,7 +81,7 @@ void sort_samples(const ElevationGrid& grid, const GroundSegmentation& ground, c
   };
   workspace.first.assign(blocks.size() + 1, 0);
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
-    if (is_sample(slot)) ++workspace.first[blocks.of(grid.geometry.index_of(grid.cell[slot])) + 1];
+    if (is_sample(slot)) ++workspace.first[static_cast<std::size_t>(workspace.block[slot]) + 1];
   }
   for (std::size_t b = 1; b < workspace.first.size(); ++b)
     workspace.first[b] += workspace.first[b - 1];
@@ -82,7 +89,7 @@ void sort_samples(const ElevationGrid& grid, const GroundSegmentation& ground, c
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
     if (!is_sample(slot)) continue;
     const RaisedGroundWorkspace::Sums& from = workspace.sums[slot];
-    std::int32_t& next = workspace.first[blocks.of(grid.geometry.index_of(grid.cell[slot]))];
+    std::int32_t& next = workspace.first[static_cast<std::size_t>(workspace.block[slot])];
     workspace.samples[static_cast<std::size_t>(next++)] = {from.x / from.n, from.y / from.n,
                                                            from.z / from.n};
   }
@@ -285,12 +292,11 @@ void fit_planes(const FieldWorkspace& field, const Blocks& blocks, const RaisedG
 
 // Looks in four directions for the first observed cell within two cells.
 void look_at_edges(const ElevationGrid& grid, const GroundSegmentation& ground,
-                   const Blocks& blocks, const RaisedGroundWorkspace& workspace,
-                   FieldCells& cells) {
+                   const RaisedGroundWorkspace& workspace, FieldCells& cells) {
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
     if (cells.raised[slot] == 0) continue;
     const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
-    const GroundAround& plane = workspace.around[blocks.of(at)];
+    const GroundAround& plane = workspace.around[static_cast<std::size_t>(workspace.block[slot])];
     const float height = 0.5F * (cells.raised_low[slot] + cells.raised_high[slot]);
     for (const CellIndex direction :
          {CellIndex{1, 0}, CellIndex{-1, 0}, CellIndex{0, 1}, CellIndex{0, -1}}) {
@@ -323,6 +329,7 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
   if (field.surface.height.empty()) return;
   const Blocks blocks(grid.geometry, params.block);
   sum_ground(points, field.points, point_slots, n, workspace.sums);
+  find_blocks(grid, blocks, workspace.block);
   sort_samples(grid, ground, blocks, workspace);
   fit_planes(field, blocks, params, workspace);
   const auto least = static_cast<float>(params.least_height);
@@ -331,8 +338,7 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
     if (point_slots[i] < 0 || field.points.support[i] != Support::kGround) continue;
     const auto slot = static_cast<std::size_t>(point_slots[i]);
     if (ground.rule[slot] == GroundRule::kLow) continue;
-    const GroundAround& plane =
-        workspace.around[blocks.of(grid.geometry.index_of(grid.cell[slot]))];
+    const GroundAround& plane = workspace.around[static_cast<std::size_t>(workspace.block[slot])];
     if (!plane.known) continue;
     const float height = points.z[i] - plane.height_at(points.x[i], points.y[i]);
     if (height < least) continue;
@@ -344,7 +350,7 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
     cells.raised_high[slot] = std::max(cells.raised_high[slot], height);
     ++cells.raised[slot];
   }
-  look_at_edges(grid, ground, blocks, workspace, cells);
+  look_at_edges(grid, ground, workspace, cells);
 }
 
 const GroundAround* ground_around(const GridGeometry& geometry, const RaisedGroundParams& params,

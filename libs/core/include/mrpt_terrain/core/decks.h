@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "mrpt_terrain/core/cell_bits.h"
 #include "mrpt_terrain/core/field_cells.h"
 #include "mrpt_terrain/core/height_sums.h"
 #include "mrpt_terrain/core/param_info.h"
@@ -82,6 +83,7 @@ struct DeckLayer {
 
 /// Scratch memory of `find_decks`.
 struct DeckWorkspace {
+  CellBits candidate_cells;  ///< the cells of those slots that are `candidate`
   std::vector<std::uint8_t> candidate;  ///< per slot
   std::vector<DeckLayer> all, top;      ///< per candidate slot: its points, and the highest
   std::vector<std::int32_t> number;     ///< per slot: of its deck, or -1

@@ -22,6 +22,8 @@ struct OrientedBox {
 
 /// Scratch memory of `box_around`.
 struct OrientedBoxWorkspace {
+  std::vector<double> x, y;    ///< of the members
+  std::vector<double> inside;  ///< of each: least distance from an edge of the octagon, scaled
   std::vector<Position2> candidates;
   std::vector<Position2> hull;
 };

@@ -85,6 +85,7 @@ struct RaisedGroundWorkspace {
     float x = 0.0F, y = 0.0F, z = 0.0F, n = 0.0F;
   };
   std::vector<Sums> sums;             ///< per slot: of its points on the ground
+  std::vector<std::int32_t> block;    ///< per slot: in which block it lies
   std::vector<std::int32_t> first;    ///< per block: of its samples; one more at the end
   std::vector<GroundSample> samples;  ///< by block
   GroundWindow window;                ///< of one plane
