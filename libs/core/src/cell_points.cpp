@@ -46,19 +46,29 @@ void count_points(const std::vector<std::int32_t>& cell_of, std::int32_t* count)
   }
 }
 
+// Whether any of 16 cells is occupied: most are not.
+bool any_occupied(const std::int32_t* count) {
+  std::int32_t any = 0;
+  for (int k = 0; k < 16; ++k) any |= count[k];
+  return any != 0;
+}
+
 // Slots of the occupied cells and where their points begin; `count` becomes that, too.
 std::int32_t number_cells(std::vector<std::int32_t>& count, CellPoints& result) {
   std::int32_t points = 0;
   const std::int32_t side = result.lattice.side;
-  std::size_t number = 0;
   for (std::int32_t row = 0; row < side; ++row) {
-    for (std::int32_t column = 0; column < side; ++column, ++number) {
-      if (count[number] == 0) continue;
-      result.slot_of[number] = static_cast<std::int32_t>(result.cell.size());
+    std::int32_t* in_row = count.data() + static_cast<std::ptrdiff_t>(row) * side;
+    for (std::int32_t column = 0; column < side; ++column) {
+      while (column + 16 <= side && !any_occupied(in_row + column)) column += 16;
+      if (column == side) break;
+      if (in_row[column] == 0) continue;
+      result.slot_of[result.number_of({row, column})] =
+          static_cast<std::int32_t>(result.cell.size());
       result.cell.push_back({row, column});
       result.first.push_back(points);
-      points += count[number];
-      count[number] = result.first.back();
+      points += in_row[column];
+      in_row[column] = result.first.back();
     }
   }
   result.first.push_back(points);
@@ -70,17 +80,18 @@ std::int32_t number_cells(std::vector<std::int32_t>& count, CellPoints& result) 
 void sort_into_cells(const PointsView& scan, const SquareLattice& lattice,
                      CellPointsWorkspace& workspace, CellPoints& result) {
   prepare(lattice, workspace, result);
-  workspace.cell_of.resize(scan.size);
-  find_cells(scan, lattice, workspace.cell_of.data());
-  count_points(workspace.cell_of, workspace.count.data());
+  std::vector<std::int32_t>& place_of = workspace.place_of;  // cells, until places are known
+  place_of.resize(scan.size);
+  find_cells(scan, lattice, place_of.data());
+  count_points(place_of, workspace.count.data());
   const auto points = static_cast<std::size_t>(number_cells(workspace.count, result));
   result.points.resize(points);
   std::int32_t* next = workspace.count.data();
   for (std::size_t i = 0; i < scan.size; ++i) {
-    const std::int32_t cell = workspace.cell_of[i];
-    if (cell < 0) continue;
-    result.points[static_cast<std::size_t>(next[cell]++)] = {scan.x[i], scan.y[i], scan.z[i],
-                                                             static_cast<std::int32_t>(i)};
+    if (place_of[i] < 0) continue;
+    place_of[i] = next[place_of[i]]++;
+    result.points[static_cast<std::size_t>(place_of[i])] = {scan.x[i], scan.y[i], scan.z[i],
+                                                            static_cast<std::int32_t>(i)};
   }
   for (const LatticeCell cell : result.cell) workspace.count[result.number_of(cell)] = 0;
 }

@@ -92,7 +92,9 @@ void choose_candidates(const ElevationGrid& grid, const GroundSegmentation& grou
                       cells.high[slot] <= static_cast<float>(params.curb_height);
     const bool candidate = ground.rule[slot] == GroundRule::kHigh && thin;
     workspace.candidate[slot] = candidate ? 1 : 0;
-    if (candidate) workspace.candidate_cells.mark(grid.geometry.index_of(grid.cell[slot]));
+    if (!candidate) continue;
+    workspace.candidate_cells.mark(grid.geometry.index_of(grid.cell[slot]));
+    workspace.all[slot] = workspace.top[slot] = DeckLayer{};
   }
 }
 
@@ -100,7 +102,6 @@ void choose_candidates(const ElevationGrid& grid, const GroundSegmentation& grou
 void measure_layers(const PointsView& scan, const FieldPoints& points,
                     const PointSlots& point_slots, const FieldCells& cells,
                     DeckWorkspace& workspace) {
-  for (auto* layers : {&workspace.all, &workspace.top}) layers->assign(cells.size(), DeckLayer{});
   for (std::size_t i = 0; i < point_slots.size(); ++i) {
     if (point_slots[i] < 0 || points.support[i] != Support::kAbove) continue;
     const auto slot = static_cast<std::size_t>(point_slots[i]);
@@ -110,8 +111,11 @@ void measure_layers(const PointsView& scan, const FieldPoints& points,
     if (height >= cells.high[slot] - kTopLayer)
       workspace.top[slot].add(scan.x[i], scan.y[i], scan.z[i], height);
   }
-  for (auto* layers : {&workspace.all, &workspace.top})
-    for (DeckLayer& layer : *layers) layer.finish();
+  for (std::size_t slot = 0; slot < cells.size(); ++slot) {
+    if (workspace.candidate[slot] == 0) continue;
+    workspace.all[slot].finish();
+    workspace.top[slot].finish();
+  }
 }
 
 void collect_members(const DeckSearch& search, std::size_t first) {
@@ -248,8 +252,14 @@ void sum_surface_points(const PointsView& scan, const FieldPoints& points,
                         const FieldCells& cells, const DeckParams& params,
                         DeckWorkspace& workspace) {
   const auto side = static_cast<float>(params.side);
-  workspace.sums.assign(cells.size(), HeightSums{});
-  workspace.remembered.assign(measured < point_slots.size() ? cells.size() : 0, HeightSums{});
+  // Entries of cells without deck are never looked at.
+  workspace.sums.resize(cells.size());
+  workspace.remembered.resize(measured < point_slots.size() ? cells.size() : 0);
+  for (std::size_t slot = 0; slot < cells.size(); ++slot) {
+    if (cells.deck[slot] < 0) continue;
+    workspace.sums[slot] = {};
+    if (!workspace.remembered.empty()) workspace.remembered[slot] = {};
+  }
   for (std::size_t i = 0; i < point_slots.size(); ++i) {
     if (point_slots[i] < 0 || points.support[i] != Support::kAbove) continue;
     const auto slot = static_cast<std::size_t>(point_slots[i]);
@@ -388,6 +398,8 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
                 const DeckParams& params, DeckWorkspace& workspace, FieldCells& cells) {
   const std::size_t n = grid.observed();
   workspace.candidate.resize(n);
+  workspace.all.resize(n);
+  workspace.top.resize(n);
   workspace.number.assign(n, -1);
   cells.deck.assign(n, -1);
   cells.deck_plane.resize(n);

@@ -9,22 +9,23 @@ namespace mrpt_terrain {
 namespace {
 
 // From the order of the cells to that of the scan.
-void put_in_order(const PointsView& scan, const GroundSurface& surface,
-                  const std::vector<Support>& support, FieldPoints& points) {
+void put_in_order(const PointsView& scan, const std::vector<std::int32_t>& place_of,
+                  const GroundSurface& surface, const std::vector<Support>& support,
+                  FieldPoints& points) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   points.height.resize(scan.size);
-  points.support.assign(scan.size, Support::kUnknown);
-  if (surface.height.size() != scan.size) {
-    for (std::size_t i = 0; i < scan.size; ++i) {
-      const bool finite =
-          std::isfinite(scan.x[i]) && std::isfinite(scan.y[i]) && std::isfinite(scan.z[i]);
-      points.height[i] = finite ? 0.0F : kNan;
+  points.support.resize(scan.size);
+  for (std::size_t i = 0; i < scan.size; ++i) {
+    const auto place = static_cast<std::size_t>(place_of[i]);
+    if (place_of[i] >= 0) {
+      points.height[i] = surface.height[place];
+      points.support[i] = support[place];
+      continue;
     }
-  }
-  for (std::size_t k = 0; k < surface.height.size(); ++k) {
-    const auto i = static_cast<std::size_t>(surface.cells.points[k].index);
-    points.height[i] = surface.height[k];
-    points.support[i] = support[k];
+    const bool finite =
+        std::isfinite(scan.x[i]) && std::isfinite(scan.y[i]) && std::isfinite(scan.z[i]);
+    points.height[i] = finite ? 0.0F : kNan;
+    points.support[i] = Support::kUnknown;
   }
 }
 
@@ -68,7 +69,8 @@ void find_field_ground(const ScanView& scan, const GroundSurfaceParams& surface,
   find_ground_surface(scan, surface, workspace.surface_workspace, workspace.surface);
   label_by_height(workspace.surface, labels, workspace.label_workspace, workspace.threshold,
                   workspace.support);
-  put_in_order(scan.points, workspace.surface, workspace.support, workspace.points);
+  put_in_order(scan.points, workspace.surface_workspace.sort.place_of, workspace.surface,
+               workspace.support, workspace.points);
 }
 
 void measure_field_cells(const FieldWorkspace& workspace, const ElevationGrid& grid,

@@ -103,7 +103,6 @@ void sort_samples(const ElevationGrid& grid, const GroundSegmentation& ground, c
 void collect_window(const Blocks& blocks, int row, int column, const GroundAround& plane,
                     RaisedGroundWorkspace& workspace) {
   GroundWindow& window = workspace.window;
-  window.clear();
   const int first_row = std::max(row - 1, 0), last_row = std::min(row + 1, blocks.rows - 1);
   // The blocks of a row lie one behind the other.
   const auto begin = [&](int i) {
@@ -116,17 +115,19 @@ void collect_window(const Blocks& blocks, int row, int column, const GroundAroun
   std::size_t samples = 0;
   for (int i = first_row; i <= last_row; ++i) samples += end(i) - begin(i);
   const std::size_t stride = samples / kMostSamples + 1;
-  std::size_t skip = 0;
+  std::size_t skip = 0, next = 0;
+  window.resize(kMostSamples + kCellLanes);
   for (int i = first_row; i <= last_row; ++i) {
     std::size_t k = begin(i) + skip;
     for (; k < end(i); k += stride) {
       const GroundSample& sample = workspace.samples[k];
-      window.add(sample.x - plane.centre_x, sample.y - plane.centre_y, sample.z, 1.0F);
+      window.set(next++, sample.x - plane.centre_x, sample.y - plane.centre_y, sample.z, 1.0F);
     }
     skip = k - end(i);
   }
-  window.samples = window.u.size();
-  while (window.u.size() % kCellLanes != 0) window.add(0.0F, 0.0F, plane.height, 0.0F);
+  window.samples = next;
+  while (next % kCellLanes != 0) window.set(next++, 0.0F, 0.0F, plane.height, 0.0F);
+  window.resize(next);
 }
 
 /// Weighted sums for a plane, about its present height.

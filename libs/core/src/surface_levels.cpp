@@ -133,14 +133,22 @@ void sum_differences(int level, std::int32_t side, const GroundSurface& surface,
   WeightedSum* sums = workspace.cell_sums.data();
   std::int32_t* touched = workspace.touched.data();
   std::size_t count = 0;
-  for (std::size_t slot = 0; slot < n; ++slot) {
-    const std::int32_t at =
-        ((cell[slot].row >> level) + 1) * stride + (cell[slot].column >> level) + 1;
-    WeightedSum& sum = sums[at];
+  const auto place_of = [&](std::size_t slot) {
+    return ((cell[slot].row >> level) + 1) * stride + (cell[slot].column >> level) + 1;
+  };
+  for (std::size_t slot = 0; slot < n;) {
+    // Those that follow each other in a cell of the level are summed up in registers.
+    const std::int32_t at = place_of(slot);
+    const WeightedSum before = sums[at];
+    WeightedSum sum = before;
+    do {
+      sum.sum += weight[slot] * difference[slot];
+      sum.weight += weight[slot];
+      ++slot;
+    } while (level >= kCoarseLevel && slot < n && place_of(slot) == at);
+    sums[at] = sum;
     touched[count] = at;
-    count += (sum.weight == 0.0F) & (weight[slot] > 0.0F) ? 1U : 0U;
-    sum.sum += weight[slot] * difference[slot];
-    sum.weight += weight[slot];
+    count += (before.weight == 0.0F) & (sum.weight > 0.0F) ? 1U : 0U;
   }
   workspace.touched_cells = count;
 }

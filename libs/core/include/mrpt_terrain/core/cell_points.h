@@ -65,7 +65,8 @@ struct CellPoints {
 
 /// Scratch memory of `sort_into_cells`.
 struct CellPointsWorkspace {
-  std::vector<std::int32_t> cell_of;  ///< per point of the scan
+  /// Per point of the scan: its place in `CellPoints::points`, or -1.
+  std::vector<std::int32_t> place_of;
   std::vector<std::int32_t> count;    ///< per cell; all 0 between calls
 };
 

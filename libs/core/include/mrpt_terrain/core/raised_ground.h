@@ -68,14 +68,14 @@ struct GroundWindow {
   std::vector<float> use;      ///< 1, and 0 where the samples end
   std::size_t samples = 0;
 
-  void clear() {
-    for (auto* values : {&u, &v, &z, &use}) values->clear();
+  void resize(std::size_t n) {
+    for (auto* values : {&u, &v, &z, &use}) values->resize(n);
   }
-  void add(float pu, float pv, float pz, float weight) {
-    u.push_back(pu);
-    v.push_back(pv);
-    z.push_back(pz);
-    use.push_back(weight);
+  void set(std::size_t k, float pu, float pv, float pz, float weight) {
+    u[k] = pu;
+    v[k] = pv;
+    z[k] = pz;
+    use[k] = weight;
   }
 };
 
