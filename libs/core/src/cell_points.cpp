@@ -75,6 +75,17 @@ std::int32_t number_cells(std::vector<std::int32_t>& count, CellPoints& result) 
   return points;
 }
 
+// Cells become places; `next` is where the next point of every cell goes.
+void place_points(const PointsView scan, std::int32_t* next, std::int32_t* place_of,
+                  CellPoint* points) {
+  for (std::size_t i = 0; i < scan.size; ++i) {
+    if (place_of[i] < 0) continue;
+    const std::int32_t place = next[place_of[i]]++;
+    place_of[i] = place;
+    points[place] = {scan.x[i], scan.y[i], scan.z[i], static_cast<std::int32_t>(i)};
+  }
+}
+
 }  // namespace
 
 void sort_into_cells(const PointsView& scan, const SquareLattice& lattice,
@@ -86,13 +97,7 @@ void sort_into_cells(const PointsView& scan, const SquareLattice& lattice,
   count_points(place_of, workspace.count.data());
   const auto points = static_cast<std::size_t>(number_cells(workspace.count, result));
   result.points.resize(points);
-  std::int32_t* next = workspace.count.data();
-  for (std::size_t i = 0; i < scan.size; ++i) {
-    if (place_of[i] < 0) continue;
-    place_of[i] = next[place_of[i]]++;
-    result.points[static_cast<std::size_t>(place_of[i])] = {scan.x[i], scan.y[i], scan.z[i],
-                                                            static_cast<std::int32_t>(i)};
-  }
+  place_points(scan, workspace.count.data(), place_of.data(), result.points.data());
   for (const LatticeCell cell : result.cell) workspace.count[result.number_of(cell)] = 0;
 }
 
