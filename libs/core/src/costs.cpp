@@ -425,7 +425,7 @@ MRPT_TERRAIN_LANES void tell_smoothest(const NearbyLanes& before, const NearbyLa
                                        std::size_t k, ToldLanes& told) {
   constexpr double kApart = 4.0;  // standard deviations
   const DoubleLanes zero{};
-  const DoubleLanes&a = before.roughness, &b = behind.roughness;
+  const DoubleLanes &a = before.roughness, &b = behind.roughness;
   const DoubleLanes smooth = b < a ? b : a;
   const DoubleLanes rough = b < a ? a : b;
   const DoubleLanes rise = before.height - behind.height;
@@ -453,7 +453,8 @@ void measure_lanes(double max_gradient, double cell_size, CellsAround& cells) {
   take_roots(points);
   const DoubleLanes tolerance = kSurelyNoise * noise / points;
   find_step_within(cells, max_gradient, cell_size, self, noise, step);
-  ToldLanes told{self.known > zero ? zero + static_cast<double>(kSelf) : zero - 1.0, self.roughness};
+  ToldLanes told{self.known > zero ? zero + static_cast<double>(kSelf) : zero - 1.0,
+                 self.roughness};
   DoubleLanes told_by_any;
   set_flags(told_by_any);
   for (std::size_t k = 0; k < kSelf; ++k) {

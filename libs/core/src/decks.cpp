@@ -138,20 +138,33 @@ void collect_members(const DeckSearch& search, std::size_t first) {
   }
 }
 
+void mark_members(const DeckSearch& search, bool marked) {
+  const ElevationGrid& grid = search.grid;
+  CellBits& bits = search.workspace.member_cells;
+  for (const std::int32_t member : search.workspace.members) {
+    const CellIndex cell = grid.geometry.index_of(grid.cell[static_cast<std::size_t>(member)]);
+    if (marked) {
+      bits.mark(cell);
+    } else {
+      bits.unmark(cell);
+    }
+  }
+}
+
 // The surface of a deck at one of its cells: a plane through the layers of the cells up to `reach`
 // cells away, those of sides left out by a second look.
 // \return whether enough layers lie around
 bool fit_surface(const DeckSearch& search, const std::vector<DeckLayer>& layers, std::size_t slot,
-                 std::int32_t deck, int reach, DeckPlane& plane, SurfaceFit& fit) {
+                 int reach, DeckPlane& plane, SurfaceFit& fit) {
   const DeckLayer& at = layers[slot];
+  const CellIndex cell = search.grid.geometry.index_of(search.grid.cell[slot]);
   const auto side = static_cast<float>(search.params.side);
   plane = {at.x, at.y, at.z, 0.0F, 0.0F, 0.0F};
   bool found = false;
   for (int pass = 0; pass < 2; ++pass) {
     HeightSums heights, above;
-    search.visit_around(slot, reach, [&](std::size_t other) {
-      if (search.workspace.number[other] != deck) return;
-      const DeckLayer& layer = layers[other];
+    search.workspace.member_cells.for_marked_around(cell, reach, [&](CellIndex other) {
+      const DeckLayer& layer = layers[static_cast<std::size_t>(search.grid.slot_at(other))];
       if (pass > 0 && layer.z < plane.at(layer.x, layer.y) - side) return;
       heights.add(layer.x - at.x, layer.y - at.y, layer.z - at.z);
       above.add(layer.x - at.x, layer.y - at.y, layer.above - at.above);
@@ -175,8 +188,7 @@ float median_of(std::vector<float>& values) {
 // Fits the planes at the cells of a deck.
 // \param[out] fit medians over them
 // \return whether there are enough
-bool fit_surfaces(const DeckSearch& search, const std::vector<DeckLayer>& layers, std::int32_t deck,
-                  SurfaceFit& fit) {
+bool fit_surfaces(const DeckSearch& search, const std::vector<DeckLayer>& layers, SurfaceFit& fit) {
   DeckWorkspace& workspace = search.workspace;
   workspace.bends.clear();
   workspace.slopes.clear();
@@ -185,8 +197,8 @@ bool fit_surfaces(const DeckSearch& search, const std::vector<DeckLayer>& layers
     const auto slot = static_cast<std::size_t>(member);
     DeckPlane plane;
     SurfaceFit here{};
-    if (fit_surface(search, layers, slot, deck, kNearReach, plane, here) ||
-        fit_surface(search, layers, slot, deck, kFarReach, plane, here)) {
+    if (fit_surface(search, layers, slot, kNearReach, plane, here) ||
+        fit_surface(search, layers, slot, kFarReach, plane, here)) {
       workspace.bends.push_back(here.bend);
       workspace.slopes.push_back(here.slope);
     }
@@ -224,12 +236,12 @@ DeckKind kind_of(const DeckSearch& search) {
 
 // Whether the cells of a deck are even, and their planes. A slope is told by the means of its
 // cells, a narrow level by their tops, as its sides are in the same cells.
-bool is_even(const DeckSearch& search, DeckKind kind, std::int32_t number) {
+bool is_even(const DeckSearch& search, DeckKind kind) {
   const DeckWorkspace& workspace = search.workspace;
   const bool level = kind == DeckKind::kLevel;
   SurfaceFit fit{};
   for (const bool by_tops : {level, !level}) {
-    if (!fit_surfaces(search, by_tops ? workspace.top : workspace.all, number, fit)) continue;
+    if (!fit_surfaces(search, by_tops ? workspace.top : workspace.all, fit)) continue;
     if (kind == DeckKind::kRamp && fit.slope < kLeastSlope) continue;
     if (fit.bend <= static_cast<float>(search.params.unevenness)) return true;
   }
@@ -400,22 +412,21 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
   workspace.candidate.resize(n);
   workspace.all.resize(n);
   workspace.top.resize(n);
-  workspace.number.assign(n, -1);
+  workspace.member_cells.clear(grid.geometry);
   cells.deck.assign(n, -1);
   cells.deck_plane.resize(n);
   choose_candidates(grid, ground, params, cells, workspace);
   measure_layers(scan.points, points, point_slots, cells, workspace);
   const DeckSearch search{grid, cells, params, workspace,
                           static_cast<float>(std::tan(params.max_slope))};
-  std::int32_t tried = 0;
   std::int32_t found = 0;
   for (std::size_t slot = 0; slot < n; ++slot) {
     if (workspace.candidate[slot] == 0) continue;
     collect_members(search, slot);
-    for (const std::int32_t member : workspace.members)
-      workspace.number[static_cast<std::size_t>(member)] = tried;
     const DeckKind kind = kind_of(search);
-    if (kind != DeckKind::kNone && is_even(search, kind, tried)) {
+    if (kind == DeckKind::kNone) continue;
+    mark_members(search, true);
+    if (is_even(search, kind)) {
       for (std::size_t k = 0; k < workspace.members.size(); ++k) {
         const auto member = static_cast<std::size_t>(workspace.members[k]);
         cells.deck[member] = found;
@@ -424,7 +435,7 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
       }
       ++found;
     }
-    ++tried;
+    mark_members(search, false);
   }
   sum_surface_points(scan.points, points, point_slots, scan.origins.measured, cells, params,
                      workspace);

@@ -75,22 +75,19 @@ int reach_of(const ElevationGrid& grid, const FieldClusterParams& params, CellIn
   return std::min(reach, kMostReach);
 }
 
-// Unites a cell with those before it, in the order of the slots, that are near enough.
-void link_back(const Linker& linker, std::size_t slot, int reach,
-               std::vector<std::int32_t>& parent) {
-  const GridGeometry& geometry = linker.grid.geometry;
-  const CellIndex at = geometry.index_of(linker.grid.cell[slot]);
-  for (int l = std::max(at.l - reach, 0); l <= at.l; ++l) {
-    const Slot* slots = linker.grid.slot_of.data() + value_of(geometry.id_of({l, 0}));
-    const int last = l == at.l ? at.w - 1 : std::min(at.w + reach, geometry.cells_w() - 1);
-    for (int w = std::max(at.w - reach, 0); w <= last; ++w) {
-      const Slot other = slots[w];
-      if (other == kUnobserved || !linker.is_member(static_cast<std::size_t>(other))) continue;
-      const bool touching = at.l - l <= 1 && std::abs(at.w - w) <= 1;
-      if (linker.compatible(slot, static_cast<std::size_t>(other), touching))
-        unite(parent, static_cast<std::int32_t>(slot), other);
-    }
-  }
+// Unites a cell with those marked so far, which are before it in the order of the slots, that are
+// near enough, and marks it.
+void link_back(const Linker& linker, std::size_t slot, const FieldClusterParams& params,
+               CellBits& members, std::vector<std::int32_t>& parent) {
+  const ElevationGrid& grid = linker.grid;
+  const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
+  members.for_marked_around(at, reach_of(grid, params, at), [&](CellIndex near) {
+    const Slot other = grid.slot_at(near);
+    const bool touching = at.l - near.l <= 1 && std::abs(at.w - near.w) <= 1;
+    if (linker.compatible(slot, static_cast<std::size_t>(other), touching))
+      unite(parent, static_cast<std::int32_t>(slot), other);
+  });
+  members.mark(at);
 }
 
 /// Links cells of raised ground with nothing but unseen cells between them: a curb or a ramp that
@@ -102,20 +99,17 @@ class UnseenLinker {
         level_(static_cast<float>(params.level)),
         reach_(static_cast<int>(params.unseen / linker.grid.geometry.cell_size())) {}
 
-  void link_back(std::size_t slot, std::vector<std::int32_t>& parent) const {
+  // As the function above.
+  void link_back(std::size_t slot, CellBits& raised, std::vector<std::int32_t>& parent) const {
     if (!is_raised_only(slot)) return;
-    const GridGeometry& geometry = linker_.grid.geometry;
-    const CellIndex at = geometry.index_of(linker_.grid.cell[slot]);
-    for (int l = std::max(at.l - reach_, 0); l <= at.l; ++l) {
-      const Slot* slots = linker_.grid.slot_of.data() + value_of(geometry.id_of({l, 0}));
-      const int last = l == at.l ? at.w - 1 : std::min(at.w + reach_, geometry.cells_w() - 1);
-      for (int w = std::max(at.w - reach_, 0); w <= last; ++w) {
-        const Slot other = slots[w];
-        if (other == kUnobserved || !is_raised_only(static_cast<std::size_t>(other))) continue;
-        if (!as_high(slot, static_cast<std::size_t>(other)) || !is_unseen(at, {l, w})) continue;
+    const ElevationGrid& grid = linker_.grid;
+    const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
+    raised.for_marked_around(at, reach_, [&](CellIndex near) {
+      const Slot other = grid.slot_at(near);
+      if (as_high(slot, static_cast<std::size_t>(other)) && is_unseen(at, near))
         unite(parent, static_cast<std::int32_t>(slot), other);
-      }
-    }
+    });
+    raised.mark(at);
   }
 
  private:
@@ -203,14 +197,16 @@ void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& gr
                       static_cast<float>(params.level)};
   const std::size_t n = grid.observed();
   workspace.parent.resize(n);
+  workspace.members.clear(grid.geometry);
+  workspace.raised.clear(grid.geometry);
   for (std::size_t slot = 0; slot < n; ++slot) {
     workspace.parent[slot] = static_cast<std::int32_t>(slot);
-    if (!linker.is_member(slot)) continue;
-    link_back(linker, slot, reach_of(grid, params, grid.geometry.index_of(grid.cell[slot])),
-              workspace.parent);
+    if (linker.is_member(slot))
+      link_back(linker, slot, params, workspace.members, workspace.parent);
   }
   const UnseenLinker unseen(linker, params);
-  for (std::size_t slot = 0; slot < n; ++slot) unseen.link_back(slot, workspace.parent);
+  for (std::size_t slot = 0; slot < n; ++slot)
+    unseen.link_back(slot, workspace.raised, workspace.parent);
   count_members(linker, workspace);
   number_things(params, workspace, result);
   result.cluster_of.assign(n, kNoCluster);

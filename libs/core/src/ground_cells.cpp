@@ -38,7 +38,8 @@ struct PointsOfCell {
 PointsOfCell points_in(const CellPoints& cells, std::size_t slot) {
   const CellPoint* points = cells.points.data();
   return {points + cells.first[slot], points + cells.first[slot + 1],
-          cells.lattice.centre(cells.cell[slot].row), cells.lattice.centre(cells.cell[slot].column)};
+          cells.lattice.centre(cells.cell[slot].row),
+          cells.lattice.centre(cells.cell[slot].column)};
 }
 
 struct LowBand {

@@ -65,7 +65,7 @@ struct RimLattice {
 
 void sum_heights(const GroundSurface& surface, const RimLattice& rim, bool again,
                  HoleWorkspace& workspace) {
-  for (RimSums& sums : workspace.sums) sums = {};
+  for (const LatticeCell cell : surface.cells.cell) workspace.sums[rim.at(cell)] = {};
   for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
     const std::size_t at = rim.at(surface.cells.cell[slot]);
     const float height = workspace.height[slot];
@@ -79,7 +79,7 @@ void sum_heights(const GroundSurface& surface, const RimLattice& rim, bool again
 }
 
 void sum_around(const GroundSurface& surface, const RimLattice& rim, HoleWorkspace& workspace) {
-  for (RimSums& sums : workspace.around) sums = {};
+  for (const LatticeCell cell : surface.cells.cell) workspace.around[rim.at(cell)] = {};
   for (const LatticeCell cell : surface.cells.cell) {
     const std::size_t at = rim.at(cell);
     if (workspace.around[at].weight > 0.0F) continue;
@@ -104,6 +104,8 @@ void raise_base_to_rim(const GroundSurface& surface, HoleWorkspace& workspace) {
     workspace.base[slot].height +=
         mean.weight > 0.0F ? mean.sum / mean.weight : workspace.height[slot];
   }
+  // Cells without slots are zero always.
+  for (const LatticeCell cell : surface.cells.cell) workspace.sums[rim.at(cell)] = {};
 }
 
 // Mean height of the ground above the base level, twice: the second time without what lies low.

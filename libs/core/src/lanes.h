@@ -48,8 +48,8 @@ MRPT_TERRAIN_LANES void take_roots(DoubleLanes& lanes) {
 }
 
 // Comparisons are best written where they select: compilers that do not know the processor yet turn
-// those that are kept in a `MaskLanes`, or combined by `&`, into one comparison per lane. Conditions
-// of several comparisons are therefore flags, 1 or 0.
+// those that are kept in a `MaskLanes`, or combined by `&`, into one comparison per lane.
+// Conditions of several comparisons are therefore flags, 1 or 0.
 MRPT_TERRAIN_LANES void set_flags(DoubleLanes& flags) { flags = DoubleLanes{} + 1.0; }
 /// Leaves a flag only where a < b.
 MRPT_TERRAIN_LANES void keep_less(const DoubleLanes& a, const DoubleLanes& b, DoubleLanes& flags) {

@@ -179,7 +179,8 @@ MRPT_TERRAIN_LANES void find_smallest_eigenvalue(const Invariants& of, DoubleLan
 
 // Whether the middle eigenvalue is at least `least`, from sum and product of the upper two.
 MRPT_TERRAIN_LANES void middle_eigenvalue_reaches(double least, const Invariants& of,
-                                                  const DoubleLanes& smallest, DoubleLanes& reaches) {
+                                                  const DoubleLanes& smallest,
+                                                  DoubleLanes& reaches) {
   const DoubleLanes zero{};
   const DoubleLanes sum = of.trace - smallest;
   const DoubleLanes product = of.minors - smallest * sum;
@@ -227,8 +228,7 @@ MRPT_TERRAIN_LANES void store_gradient(const VectorLanes& normal, WindowLanes& w
   const DoubleLanes upright = kSteepestGradient * normal.z;
   DoubleLanes level = level2;
   take_roots(level);
-  const DoubleLanes divisor =
-      level2 > upright * upright ? level / kSteepestGradient : normal.z;
+  const DoubleLanes divisor = level2 > upright * upright ? level / kSteepestGradient : normal.z;
   const DoubleLanes scale = -1.0 / divisor;
   store(normal.x * scale, window.gradient_x);
   store(normal.y * scale, window.gradient_y);

@@ -16,7 +16,8 @@ void for_nine_cells(const CellPoints& cells, std::size_t slot, F&& f) {
   const std::int32_t side = cells.lattice.side;
   const LatticeCell cell = cells.cell[slot];
   const auto visit = [&](std::int32_t row, std::int32_t column) {
-    const std::int32_t other = cells.slot_of[cells.number_of({cell.row + row, cell.column + column})];
+    const std::int32_t other =
+        cells.slot_of[cells.number_of({cell.row + row, cell.column + column})];
     f(row, column, other < 0 ? cells.occupied() : static_cast<std::size_t>(other));
   };
   if (cell.row > 0 && cell.row < side - 1 && cell.column > 0 && cell.column < side - 1) {

@@ -120,7 +120,8 @@ OrientedBox box_around(const PointsView& points, IndexRange members,
   find_inside(octagon, workspace.x.data(), workspace.y.data(), n, workspace.inside.data());
   workspace.candidates.assign(octagon.begin(), octagon.end());
   for (std::size_t i = 0; i < n; ++i) {
-    if (workspace.inside[i] <= 0.0) workspace.candidates.push_back({workspace.x[i], workspace.y[i]});
+    if (workspace.inside[i] <= 0.0)
+      workspace.candidates.push_back({workspace.x[i], workspace.y[i]});
   }
   find_hull(workspace.candidates, workspace.hull);
   const std::vector<Position2>& hull = workspace.hull;

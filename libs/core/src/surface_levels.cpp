@@ -252,7 +252,8 @@ void start_levels(const GroundSurface& surface, GroundSurfaceWorkspace& workspac
   const SquareLattice& lattice = surface.lattice();
   const auto stride = static_cast<std::size_t>(stride_of(lattice.side));
   workspace.cell_sums.resize(stride * stride);
-  for (auto* sums : {&workspace.spread_sum, &workspace.spread_weight}) sums->resize(stride * stride);
+  for (auto* sums : {&workspace.spread_sum, &workspace.spread_weight})
+    sums->resize(stride * stride);
   const SquareLattice top{side_of(lattice, kTop),
                           lattice.cell_size * static_cast<float>(1 << kTop)};
   std::vector<float>& height = workspace.level[kTop];

@@ -18,27 +18,24 @@ class CellBits {
   void clear(const GridGeometry& geometry) {
     cells_l_ = geometry.cells_l();
     cells_w_ = geometry.cells_w();
-    // One word more than needed: `around` reads two.
+    // One word more than needed: `bits_from` reads two.
     words_ = static_cast<std::size_t>(cells_w_) / 64 + 2;
     bits_.assign(static_cast<std::size_t>(cells_l_) * words_, 0);
   }
   void mark(CellIndex cell) { word_of(cell) |= bit_of(cell); }
   void unmark(CellIndex cell) { word_of(cell) &= ~bit_of(cell); }
 
-  /// Calls f with every marked cell up to `reach` <= 31 cells away along each axis, row by row. It
-  /// may unmark the cell that it is called with.
+  /// Calls f with every marked cell up to `reach` cells away along each axis, row by row. It may
+  /// unmark the cell that it is called with.
   template <class F>
   void for_marked_around(CellIndex at, int reach, F&& f) const {
     const int first_w = std::max(at.w - reach, 0);
     const int last_w = std::min(at.w + reach, cells_w_ - 1);
-    const auto shift = static_cast<unsigned>(first_w) % 64;
-    const std::uint64_t wanted = ~std::uint64_t{0} >> (63 - (last_w - first_w));
     for (int l = std::max(at.l - reach, 0); l <= std::min(at.l + reach, cells_l_ - 1); ++l) {
-      const std::uint64_t* words = &bits_[row_of(l) + static_cast<std::size_t>(first_w) / 64];
-      // Shifted in two steps, as 64 at once would do nothing.
-      std::uint64_t row = (words[0] >> shift | words[1] << 1 << (63 - shift)) & wanted;
-      for (int w = first_w; row != 0; ++w, row >>= 1) {
-        if ((row & 1) != 0) f(CellIndex{l, w});
+      for (int w = first_w; w <= last_w; w += 64) {
+        std::uint64_t bits =
+            bits_from({l, w}) & (~std::uint64_t{0} >> (63 - std::min(last_w - w, 63)));
+        for (; bits != 0; bits &= bits - 1) f(CellIndex{l, w + lowest(bits)});
       }
     }
   }
@@ -47,6 +44,22 @@ class CellBits {
   [[nodiscard]] std::size_t row_of(int l) const { return static_cast<std::size_t>(l) * words_; }
   [[nodiscard]] std::uint64_t& word_of(CellIndex cell) {
     return bits_[row_of(cell.l) + static_cast<std::size_t>(cell.w) / 64];
+  }
+  // The bits of the 64 cells from one on.
+  [[nodiscard]] std::uint64_t bits_from(CellIndex cell) const {
+    const std::uint64_t* words = &bits_[row_of(cell.l) + static_cast<std::size_t>(cell.w) / 64];
+    const auto shift = static_cast<unsigned>(cell.w) % 64;
+    // Shifted in two steps, as 64 at once would do nothing.
+    return words[0] >> shift | words[1] << 1 << (63 - shift);
+  }
+  [[nodiscard]] static int lowest(std::uint64_t bits) {
+#if defined(__GNUC__)
+    return __builtin_ctzll(bits);
+#else
+    int place = 0;
+    for (; (bits & 1) == 0; bits >>= 1) ++place;
+    return place;
+#endif
   }
   [[nodiscard]] static std::uint64_t bit_of(CellIndex cell) {
     return std::uint64_t{1} << (static_cast<unsigned>(cell.w) % 64);

@@ -67,7 +67,7 @@ struct CellPoints {
 struct CellPointsWorkspace {
   /// Per point of the scan: its place in `CellPoints::points`, or -1.
   std::vector<std::int32_t> place_of;
-  std::vector<std::int32_t> count;    ///< per cell; all 0 between calls
+  std::vector<std::int32_t> count;  ///< per cell; all 0 between calls
 };
 
 /// Brings the points of a scan together cell by cell. Points outside the lattice or with a

@@ -83,10 +83,10 @@ struct DeckLayer {
 
 /// Scratch memory of `find_decks`.
 struct DeckWorkspace {
-  CellBits candidate_cells;  ///< the cells of those slots that are `candidate`
+  CellBits candidate_cells;             ///< the cells of those slots that are `candidate`
+  CellBits member_cells;                ///< the cells of `members`, while they are looked at
   std::vector<std::uint8_t> candidate;  ///< per slot
   std::vector<DeckLayer> all, top;      ///< per candidate slot: its points, and the highest
-  std::vector<std::int32_t> number;     ///< per slot: of its deck, or -1
   std::vector<std::int32_t> members;    ///< slots of one deck
   std::vector<DeckPlane> planes;        ///< per member: the surface there
   std::vector<float> bends, slopes;     ///< of the planes

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mrpt_terrain/core/cell_bits.h"
 #include "mrpt_terrain/core/clusters.h"
 #include "mrpt_terrain/core/field_cells.h"
 #include "mrpt_terrain/core/param_info.h"
@@ -48,6 +49,7 @@ struct FieldClusterParams {
 
 /// Scratch memory of `find_field_clusters`.
 struct FieldClusterWorkspace {
+  CellBits members, raised;          ///< cells of things so far; of these, ground that is raised
   std::vector<std::int32_t> parent;  ///< per slot: another slot of the same thing, or itself
   std::vector<std::int32_t> cells_of;
   std::vector<std::int32_t> points_of;

@@ -142,7 +142,7 @@ struct GroundSurfaceWorkspace {
   std::vector<float> even;                           ///< per slot: smoothness by roughness alone
   std::vector<float> firm;  ///< per slot: smoothness by scatter along the beams
   std::array<std::vector<float>, kSurfaceLevels> level;  ///< heights at the centres of cells
-  std::vector<LevelStep> step;  ///< per row, or column, of the lattice
+  std::vector<LevelStep> step;                           ///< per row, or column, of the lattice
   HeardCells heard;
   std::vector<float> difference, weight;  ///< per slot: low height less the level, how it counts
   /// Per cell of a level and of a frame about it, all zero between levels: sums of the cell alone,
