@@ -349,7 +349,8 @@ bool measure_depth(HoleCase& hole) {
 }
 
 // Adds the cells next to the members that hold mostly deep points, and those next to these.
-void grow(HoleCase& hole) {
+// \return whether there are any
+bool grow(HoleCase& hole) {
   const ElevationGrid& grid = hole.grid();
   HoleWorkspace& workspace = hole.workspace;
   for (const HolePoint& p : workspace.points) {
@@ -360,6 +361,7 @@ void grow(HoleCase& hole) {
   clear_zones(hole);
   for (const std::int32_t slot : workspace.members)
     workspace.zone[static_cast<std::size_t>(slot)] = HoleZone::kFloor;
+  const std::size_t members = workspace.members.size();
   for (std::size_t next = 0; next < workspace.members.size(); ++next) {
     const auto slot = static_cast<std::size_t>(workspace.members[next]);
     for_slots_around(grid, slot, 1, [&](std::size_t near) {
@@ -376,6 +378,7 @@ void grow(HoleCase& hole) {
     workspace.deep[slot] = workspace.all[slot] = 0;
     p.zone = workspace.zone[slot] == HoleZone::kFar ? HoleZone::kRim : workspace.zone[slot];
   }
+  return workspace.members.size() > members;
 }
 
 /// What is met first on the way out of a hole.
@@ -546,8 +549,8 @@ bool is_hole(HoleCase& hole, HoleDescription& description) {
   const HoleWindow window = window_around(hole);
   collect_points(hole, window);
   if (!measure_depth(hole)) return false;
-  grow(hole);
-  if (is_too_wide(hole) || !measure_depth(hole)) return false;
+  // What has not grown would have the same rim and depth.
+  if (grow(hole) && (is_too_wide(hole) || !measure_depth(hole))) return false;
   if (hole.rim.sigma > hole.params.rings_depth * hole.depth) return false;
   const HoleCounts counts = count_points(hole);
   if (counts.floor < hole.params.least_points) return false;
