@@ -49,6 +49,24 @@ Points random_points(int n, double half, std::uint64_t seed) {
   return points;
 }
 
+TEST(CellPoints, EveryPointKnowsItsPlace) {
+  const Points points = random_points(2000, 20.0, 5);
+  CellPointsWorkspace workspace;
+  CellPoints cells;
+  sort_into_cells(points.view(), {32, 0.4F}, workspace, cells);
+  ASSERT_EQ(workspace.place_of.size(), points.size());
+  std::size_t placed = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (workspace.place_of[i] < 0) continue;
+    ++placed;
+    EXPECT_EQ(cells.points[static_cast<std::size_t>(workspace.place_of[i])].index,
+              static_cast<std::int32_t>(i));
+  }
+  EXPECT_EQ(placed, cells.points.size());
+  EXPECT_GT(placed, 100U);
+  EXPECT_LT(placed, points.size());
+}
+
 // Literal: four cells a side, 1 m wide, from -2 to 2.
 TEST(CellPoints, FivePointsByHand) {
   Points points;

@@ -37,6 +37,19 @@ TEST(GridGeometry, CellsOfASmallMapByHand) {
   }
 }
 
+TEST(GridGeometry, NumbersAreThoseOfTheCells) {
+  const GridGeometry geometry(5.0, 3.9, 0.2);
+  for (const double x : {-2.6, -2.5, -0.1, 0.0, 1.3, 2.4999, 2.5, kNan, kInf, -kInf}) {
+    for (const double y : {-2.0, -1.95, -0.0, 0.7, 1.9499, 1.96, kNan, kInf, -kInf}) {
+      CellIndex cell;
+      const bool inside = geometry.cell_at(x, y, cell);
+      EXPECT_EQ(geometry.number_at(x, y, true), inside ? value_of(geometry.id_of(cell)) : -1)
+          << x << " " << y;
+      EXPECT_EQ(geometry.number_at(x, y, false), -1);
+    }
+  }
+}
+
 // Row "0 < w in the projection": w = 0 is in the map.
 TEST(PaperReading, FirstColumnOfTheGridIsInTheMap) {
   const GridGeometry geometry(5.0, 5.0, 0.05);
