@@ -104,7 +104,7 @@ std::string files_text(const CTerrainMap& map, const std::string& prefix,
   if (map.octree()) endings += " .ot .bt";
   endings += " _clusters.csv _cost.pgm _cost.yaml";
   if (!map.isEmpty()) endings += " _classes.png _cost.png";
-  if (map.snapshot()->costs.has(CostPart::kObstacle) && !map.isEmpty())
+  if (map.snapshot()->costs().has(CostPart::kObstacle) && !map.isEmpty())
     endings += " _holes.csv _cost_layers.png _cost_PART.pgm _cost_PART.yaml";
   return "written: " + prefix + endings + "\n";
 }

@@ -71,14 +71,14 @@ TEST(MapFiles, FieldModeWritesEveryPartOfTheCosts) {
   // What the snapshot says of a place agrees with what it holds.
   const TerrainSnapshotPtr now = map.snapshot();
   const GridGeometry& geometry = now->description.grid.geometry;
-  ASSERT_EQ(now->costs.unseen.size(), static_cast<std::size_t>(geometry.array_size()));
+  ASSERT_EQ(now->costs().unseen.size(), static_cast<std::size_t>(geometry.array_size()));
   int unseen = 0;
   for (int l = 0; l < geometry.cells_l(); ++l) {
     for (int w = 0; w < geometry.cells_w(); ++w) {
       const Position2 place = geometry.centre_of({l, w});
       const CellView cell = now->cell_at(10 + place.x, 5 + place.y);
       const auto id = static_cast<std::size_t>(value_of(geometry.id_of({l, w})));
-      ASSERT_EQ(cell.unseen, now->costs.unseen[id]);
+      ASSERT_EQ(cell.unseen, now->costs().unseen[id]);
       if (cell.status != PlaceStatus::kUnknown) continue;
       const Cost cost = now->cost_at(10 + place.x, 5 + place.y, 0.3);
       EXPECT_EQ(cost.status, CostStatus::kUnknown);

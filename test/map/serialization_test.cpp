@@ -58,7 +58,7 @@ void expect_equal(const CTerrainMap& a, const CTerrainMap& b) {
   EXPECT_EQ(x->T_map_window.matrix(), y->T_map_window.matrix());
   EXPECT_EQ(x->description.grid.h_mean, y->description.grid.h_mean);
   EXPECT_EQ(x->description.labels.cluster, y->description.labels.cluster);
-  EXPECT_EQ(x->costs.step, y->costs.step);
+  EXPECT_EQ(x->costs().step, y->costs().step);
   ASSERT_EQ(x->clusters.size(), y->clusters.size());
   for (std::size_t k = 0; k < x->clusters.size(); ++k) {
     EXPECT_EQ(x->clusters[k].identity, y->clusters[k].identity);

@@ -187,6 +187,58 @@ TEST(TerrainMap, SnapshotsDoNotChange) {
   EXPECT_EQ(map.octree(), map.octree()) << "one copy until the next insertion";
 }
 
+// Who asks for costs pays for them, and nobody else.
+TEST(TerrainMap, CostsAreComputedWhenSomebodyAsks) {
+  for (const auto& fusion : enum_names(Fusion{})) {
+    MapParams params = small_map();
+    params.creation.fusion = fusion.value;
+    params.fusion.length = params.fusion.width = 20.0;
+    CTerrainMap map(params);
+    const auto observation = observation_of(scene_points(), lidar_pose());
+    map.insertObservation(observation, CPose3D());
+    map.insertObservation(observation, CPose3D());
+    const TerrainSnapshotPtr now = map.snapshot();
+    mrpt::io::CMemoryStream stream;
+    mrpt::serialization::archiveFrom(stream) << map;
+    mrpt::opengl::CSetOfObjects objects;
+    map.getVisualizationInto(objects);
+    EXPECT_EQ(map.cell_at(2.05, 0.75).status, PlaceStatus::kKnown);
+    EXPECT_EQ(map.clusters_in({{2.0, 0.7}, {2.1, 0.8}}).size(), 1U);
+    (void)map.computeObservationLikelihood(observation, CPose3D());
+    EXPECT_EQ(now->known_costs(), nullptr) << fusion.name;
+
+    EXPECT_EQ(map.cost_at(2.05, 0.75, 0.0).status, CostStatus::kLethal);
+    ASSERT_NE(now->known_costs(), nullptr);
+    EXPECT_EQ(now->known_costs(), &now->costs());
+    CostWorkspace workspace;
+    CellCosts expected;
+    compute_cell_costs(now->description.grid, now->robot, workspace, expected);
+    EXPECT_EQ(now->costs().step, expected.step);
+    EXPECT_EQ(now->costs().gradient_x, expected.gradient_x);
+    EXPECT_EQ(now->costs().roughness, expected.roughness);
+    EXPECT_EQ(now->costs().status, expected.status);
+
+    map.insertObservation(observation, CPose3D(0.5, 0, 0, 0, 0, 0));
+    EXPECT_EQ(map.snapshot()->known_costs(), nullptr) << "those of another snapshot";
+    map.clear();
+    EXPECT_EQ(map.snapshot()->costs().size(), 0U);
+  }
+}
+
+// The same of what is drawn, converted and saved.
+TEST(TerrainMap, PicturesOfCostsAskForThem) {
+  CTerrainMap map = seen_map();
+  (void)map.as_occupancy_grid();
+  EXPECT_NE(map.snapshot()->known_costs(), nullptr);
+  map = seen_map();
+  MapRenderParams render = map.params().render;
+  render.colouring = CellColouring::kCost;
+  map.set_render_params(render);
+  mrpt::opengl::CSetOfObjects objects;
+  map.getVisualizationInto(objects);
+  EXPECT_NE(map.snapshot()->known_costs(), nullptr);
+}
+
 TEST(TerrainMap, ThingsKeepTheirIdentityWhileTheyAreSeen) {
   CTerrainMap map = seen_map();
   const auto box_identity = [&map] {

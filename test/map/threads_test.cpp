@@ -50,7 +50,7 @@ TEST_P(TerrainMapThreads, ReadersNeverSeeHalfAScan) {
   readers.push_back(reader([&map] {
     const TerrainSnapshotPtr now = map.snapshot();
     EXPECT_EQ(now->clusters.size(), now->description.things.size());
-    EXPECT_EQ(now->costs.size(), now->description.grid.observed());
+    EXPECT_EQ(now->costs().size(), now->description.grid.observed());
     EXPECT_EQ(now->description.labels.support.size(), now->points.size());
     (void)now->cell_at(2.05, 0.75);
     (void)map.cost_at(2.05, 0.75, 0.3);
@@ -99,6 +99,48 @@ TEST_P(TerrainMapThreads, ReadersNeverSeeHalfAScan) {
   for (std::thread& thread : readers) thread.join();
   EXPECT_GE(reads.load(), static_cast<int>(readers.size()));
   EXPECT_EQ(map.snapshot()->revision, 12U);
+}
+
+void expect_same(const CellCosts& a, const CellCosts& b) {
+  EXPECT_EQ(a.gradient_x, b.gradient_x);
+  EXPECT_EQ(a.gradient_y, b.gradient_y);
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_EQ(a.roughness, b.roughness);
+  EXPECT_EQ(a.status, b.status);
+}
+
+// Oracle: a map that one thread alone asks, scan by scan. Snapshots that were computed at the same
+// time hand their memory to each other; with the second scan it is used again.
+TEST_P(TerrainMapThreads, CostsAreTheSameWhoeverAsksFirst) {
+  MapParams params = small_map();
+  params.creation.fusion = GetParam();
+  params.fusion.length = params.fusion.width = 20.0;
+  CTerrainMap map(params), quiet(params);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto observation = observation_of(scene_points(seed), lidar_pose());
+    const CPose3D pose(0.3 * static_cast<double>(seed), 0, 0, 0, 0, 0);
+    const TerrainSnapshotPtr before = map.snapshot();
+    ASSERT_TRUE(map.insertObservation(observation, pose));
+    ASSERT_TRUE(quiet.insertObservation(observation, pose));
+    const TerrainSnapshotPtr now = map.snapshot();
+    EXPECT_EQ(now->known_costs(), nullptr);
+    std::atomic<int> waiting{5};
+    const auto ask = [&waiting](const TerrainSnapshot& snapshot) {
+      --waiting;
+      while (waiting > 0) std::this_thread::yield();  // all at once
+      return &snapshot.costs();
+    };
+    std::vector<const CellCosts*> answers(4);
+    std::vector<std::thread> readers;
+    for (const CellCosts*& answer : answers) {
+      readers.emplace_back([&, to = &answer] { *to = ask(*now); });
+    }
+    readers.emplace_back([&] { (void)ask(*before); });
+    for (std::thread& reader : readers) reader.join();
+    for (const CellCosts* answer : answers) EXPECT_EQ(answer, now->known_costs());
+    ASSERT_GT(now->costs().size(), 100U);
+    expect_same(now->costs(), quiet.snapshot()->costs());
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Fusions, TerrainMapThreads,

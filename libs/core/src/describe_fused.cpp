@@ -5,41 +5,24 @@
 
 #include "describe_field.h"
 #include "describe_stages.h"
+#include "mrpt_terrain/core/move_points.h"
 #include "remembered_points.h"
 
 namespace mrpt_terrain {
 namespace {
 
-/// From the robot's frame to that of the window.
-struct ToWindow {
-  Eigen::Matrix3d rotation;
-  Eigen::Vector3d translation;
-
-  ToWindow(const Eigen::Isometry3d& T_map_robot, const WindowFrame& frame)
-      : rotation(T_map_robot.linear()),
-        translation(T_map_robot.translation() - Eigen::Vector3d(frame.x, frame.y, frame.z)) {}
-
-  [[nodiscard]] std::array<float, 3> operator()(float x, float y, float z) const {
-    const Eigen::Vector3f p =
-        (rotation * Eigen::Vector3d(x, y, z) + translation).cast<float>().eval();
-    return {p.x(), p.y(), p.z()};
-  }
-};
-
-void move_scan(const CurrentScan& current, const ToWindow& to_window,
+// Points and origins of the scan in the frame of the window, which is parallel to the map.
+void move_scan(const CurrentScan& current, const WindowFrame& frame,
                FusedDescriptionWorkspace& workspace) {
-  const PointsView& from = current.scan.points;
-  workspace.points.resize(from.size);
-  for (std::size_t i = 0; i < from.size; ++i) {
-    const std::array<float, 3> p = to_window(from.x[i], from.y[i], from.z[i]);
-    workspace.points.x[i] = p[0];
-    workspace.points.y[i] = p[1];
-    workspace.points.z[i] = p[2];
-  }
+  Eigen::Isometry3d to_window = current.scan.T_map_robot;
+  to_window.translation() -= Eigen::Vector3d(frame.x, frame.y, frame.z);
+  move_points(current.scan.points, to_window, workspace.points);
   workspace.origins.clear();
   for (std::size_t k = 0; k < current.origin_count; ++k) {
     const std::array<float, 3>& origin = current.origins.origins[k];
-    workspace.origins.push_back(to_window(origin[0], origin[1], origin[2]));
+    const Eigen::Vector3f p =
+        (to_window * Eigen::Vector3f(origin[0], origin[1], origin[2]).cast<double>()).cast<float>();
+    workspace.origins.push_back({p.x(), p.y(), p.z()});
   }
 }
 
@@ -164,7 +147,7 @@ void describe_fused(const FusedSnapshot& map, const CurrentScan& current,
   const GridParams& extent = params.description.grid;
   Description& description = result.description;
   result.frame = window_around(map.lattice, extent, T_map_robot.translation());
-  move_scan(current, ToWindow(T_map_robot, result.frame), workspace);
+  move_scan(current, result.frame, workspace);
   BeamOrigins origins = current.origins;
   if (origins.known()) origins.origins = workspace.origins.data();
   if (params.description.description.mode == DescriptionMode::kField) {

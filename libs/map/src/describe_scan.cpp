@@ -48,18 +48,16 @@ void describe_fused_window(const io::Scan& scan, double time, FusionHalf& fusion
   snapshot.fusion = fusion.params;
 }
 
+// Costs from what is known of single points, too, which only the workspace holds.
 void measure_costs(const io::Scan& scan, MapWriter& writer, TerrainSnapshot& snapshot) {
   const Description& description = snapshot.description;
-  if (writer.fusion) {
-    // The window's cells are not those of the scan: what they say themselves has to do.
-    compute_cell_costs(description, {}, snapshot.robot, writer.costs, snapshot.costs);
-    return;
-  }
+  CellCosts& costs = snapshot.give_costs();
   const ScanView view{scan.points.view(), origins_of(scan)};
+  auto workspace = writer.costs->take();
   compute_cell_costs(description, described_points(view.points, writer.workspace), snapshot.robot,
-                     writer.costs, snapshot.costs);
-  if (!snapshot.costs.has(CostPart::kUnknown)) return;
-  explain_unseen_cells(view, writer.workspace, description, writer.unseen, snapshot.costs.unseen);
+                     *workspace, costs);
+  writer.costs->give_back(std::move(workspace));
+  explain_unseen_cells(view, writer.workspace, description, writer.unseen, costs.unseen);
 }
 
 }  // namespace
@@ -99,7 +97,15 @@ std::shared_ptr<TerrainSnapshot> describe_scan(const io::Scan& scan,
     describe({scan.points.view(), origins_of(scan)}, params.description, writer.workspace,
              snapshot->description);
   }
-  measure_costs(scan, writer, *snapshot);
+  // Fused cells are not those of the scan, and paper mode looks at no points: the description says
+  // all that there is to costs, and who wants them can have them from there.
+  const bool from_points =
+      !writer.fusion && params.description.description.mode == DescriptionMode::kField;
+  if (from_points) {
+    measure_costs(scan, writer, *snapshot);
+  } else {
+    snapshot->expect_costs(writer.costs);
+  }
   return snapshot;
 }
 

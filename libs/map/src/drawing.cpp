@@ -22,8 +22,8 @@ view::CellColours colours_of(const TerrainSnapshot& snapshot, CellColouring colo
                                description.cells.support[slot]);
       };
     case CellColouring::kCost:
-      return [&snapshot](std::size_t slot) {
-        const Cost cost = cost_of(snapshot.costs, static_cast<Slot>(slot), snapshot.robot);
+      return [&costs = snapshot.costs(), &snapshot](std::size_t slot) {
+        const Cost cost = cost_of(costs, static_cast<Slot>(slot), snapshot.robot);
         return view::colour_of(cost);
       };
     case CellColouring::kHeight:

@@ -122,7 +122,7 @@ void save_cost_map(const CostImage& image, const std::string& prefix, const std:
 
 /// One map per part of the costs that is known, where there are more than those of the grid.
 void save_layers(const TerrainSnapshot& snapshot, const std::string& prefix) {
-  if (snapshot.revision == 0 || !snapshot.costs.has(CostPart::kObstacle)) return;
+  if (snapshot.revision == 0 || !snapshot.costs().has(CostPart::kObstacle)) return;
   for (const auto& entry : enum_names(CostPart{})) {
     save_cost_map(cost_image(snapshot, entry.value), prefix, std::string("_cost_") + entry.name);
   }
@@ -187,7 +187,7 @@ void save_files(const CTerrainMap& map, const std::string& prefix) {
   save_scene(map, prefix + ".3Dscene");
   if (const auto tree = map.octree()) save_octree(*tree, prefix);
   save_clusters(*now, prefix + "_clusters.csv");
-  if (now->costs.has(CostPart::kObstacle)) save_holes(*now, prefix + "_holes.csv");
+  if (now->costs().has(CostPart::kObstacle)) save_holes(*now, prefix + "_holes.csv");
   save_cost_map(cost_image(*now), prefix, "_cost");
   save_layers(*now, prefix);
   if (now->revision == 0) return;  // there is nothing to draw
@@ -197,11 +197,11 @@ void save_files(const CTerrainMap& map, const std::string& prefix) {
   options.stamp = now->stamp;
   options.params = map.params().description;
   if (map.params().creation.fusion == Fusion::kRolling) options.axes = view::ViewAxes::kMap;
-  if (!now->costs.unseen.empty()) options.unseen = &now->costs.unseen;
+  if (!now->costs().unseen.empty()) options.unseen = &now->costs().unseen;
   view::write_top_view(prefix + "_classes.png", now->description, options);
-  view::write_cost_view(prefix + "_cost.png", now->description, now->costs, now->robot, options);
-  if (now->costs.has(CostPart::kObstacle)) {
-    view::write_cost_layers(prefix + "_cost_layers.png", now->description, now->costs, now->robot,
+  view::write_cost_view(prefix + "_cost.png", now->description, now->costs(), now->robot, options);
+  if (now->costs().has(CostPart::kObstacle)) {
+    view::write_cost_layers(prefix + "_cost_layers.png", now->description, now->costs(), now->robot,
                             options);
   }
 }

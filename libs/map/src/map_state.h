@@ -40,7 +40,7 @@ struct MapWriter {
   io::SensorPoints sensor_points;
   io::Scan scan;
   DescriptionWorkspace workspace;
-  CostWorkspace costs;
+  std::shared_ptr<CostScratch> costs = std::make_shared<CostScratch>();
   UnseenWorkspace unseen;
   std::shared_ptr<SnapshotPool> snapshots = std::make_shared<SnapshotPool>();
   std::uint64_t next_identity = 1;  ///< paper mode
@@ -85,9 +85,8 @@ struct CTerrainMap::State {
 [[nodiscard]] Eigen::Isometry3d isometry_of(const mrpt::poses::CPose3D& pose);
 [[nodiscard]] mrpt::poses::CPose3D pose_of(const Eigen::Isometry3d& T);
 
-/// Describes a scan, or the cells that it was fused into, and computes the costs: all of a snapshot
-/// but its revision and the identities of its clusters.
-/// \param time of the scan, seconds
+/// Describes a scan, or the cells that it was fused into: all of a snapshot but its revision and
+/// the identities of its clusters. \param time of the scan, seconds
 [[nodiscard]] std::shared_ptr<TerrainSnapshot> describe_scan(const io::Scan& scan,
                                                              const Eigen::Isometry3d& T_map_robot,
                                                              double time, const MapParams& params,

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "mrpt_terrain/core/move_points.h"
 #include "mrpt_terrain/octree/trim_tree.h"
 
 namespace mrpt_terrain {
@@ -78,20 +79,12 @@ void OctreeHalf::guard(const MapLattice& lattice, const std::vector<GuardedGroun
 }
 
 void OctreeHalf::insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_robot) {
-  const auto in_map = [&T_map_robot](float x, float y, float z) -> Eigen::Vector3f {
-    return (T_map_robot * Eigen::Vector3f(x, y, z).cast<double>()).cast<float>();
-  };
-  const std::size_t n = scan.points.size();
-  for (auto* axis : {&x_, &y_, &z_}) axis->resize(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const Eigen::Vector3f p = in_map(scan.points.x[k], scan.points.y[k], scan.points.z[k]);
-    x_[k] = p.x();
-    y_[k] = p.y();
-    z_[k] = p.z();
-  }
+  move_points(scan.points.view(), T_map_robot, ends_);
   origins_.clear();
   for (const auto& origin : scan.ray_origins) {
-    const Eigen::Vector3f p = in_map(origin[0], origin[1], origin[2]);
+    const Eigen::Vector3f p =
+        (T_map_robot * Eigen::Vector3f(origin[0], origin[1], origin[2]).cast<double>())
+            .cast<float>();
     origins_.push_back({p.x(), p.y(), p.z()});
   }
   if (origins_.empty()) return;
@@ -102,7 +95,8 @@ void OctreeHalf::insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_rob
                                          params_.protect_ground ? &guarded_ : nullptr};
   const std::lock_guard lock(mutex_);
   copy_.reset();
-  octree::insert_scan({x_.data(), y_.data(), z_.data(), n}, origins, options, workspace_, tree_,
+  const PointsView ends = ends_.view();
+  octree::insert_scan({ends.x, ends.y, ends.z, ends.size}, origins, options, workspace_, tree_,
                       &freed_, &free_);
 }
 

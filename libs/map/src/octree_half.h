@@ -72,7 +72,7 @@ class OctreeHalf {
 
  private:
   OctreeInsertParams params_;
-  std::vector<float> x_, y_, z_;               ///< ends of a scan's rays, map frame
+  Points ends_;                                ///< of a scan's rays, map frame
   std::vector<std::array<float, 3>> origins_;  ///< and their origins
   std::vector<octree::GuardedCells> guarded_;
   octree::InsertionWorkspace workspace_;

@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "mrpt_terrain/core/field_costs.h"
 #include "mrpt_terrain/core/fused_cell.h"
 
 namespace mrpt_terrain {
@@ -81,6 +83,44 @@ std::vector<Match> matches_of(const std::vector<ClusterView>& now,
 
 }  // namespace
 
+std::unique_ptr<CostWorkspace> CostScratch::take() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (spare_) return std::move(spare_);
+  }
+  return std::make_unique<CostWorkspace>();
+}
+
+void CostScratch::give_back(std::unique_ptr<CostWorkspace> workspace) {
+  const std::lock_guard lock(mutex_);
+  spare_.swap(workspace);  // one that was there before ends here: the lock goes first
+}
+
+const CellCosts* TerrainSnapshot::known_costs() const {
+  return computed_.load(std::memory_order_acquire) ? &costs_ : nullptr;
+}
+
+const CellCosts& TerrainSnapshot::costs() const {
+  if (known_costs() != nullptr) return costs_;
+  const std::lock_guard lock(computing_);
+  if (known_costs() != nullptr) return costs_;  // somebody was faster
+  auto workspace = scratch_ ? scratch_->take() : std::make_unique<CostWorkspace>();
+  compute_cell_costs(description, {}, robot, *workspace, costs_);
+  computed_.store(true, std::memory_order_release);
+  if (scratch_) scratch_->give_back(std::move(workspace));
+  return costs_;
+}
+
+void TerrainSnapshot::expect_costs(std::shared_ptr<CostScratch> scratch) {
+  scratch_ = std::move(scratch);
+  computed_.store(false, std::memory_order_relaxed);  // nobody else knows this snapshot yet
+}
+
+CellCosts& TerrainSnapshot::give_costs() {
+  computed_.store(true, std::memory_order_relaxed);
+  return costs_;
+}
+
 Position2 TerrainSnapshot::place_at(double x, double y) const {
   constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
   const Eigen::Vector3d up = T_map_window.linear().col(2);
@@ -128,12 +168,14 @@ CellView described_cell(const TerrainSnapshot& snapshot, std::size_t k) {
 }
 
 UnseenReason unseen_at(const TerrainSnapshot& snapshot, double x, double y) {
+  // Costs that are computed later do not tell why cells are unseen.
+  const CellCosts* costs = snapshot.known_costs();
+  if (costs == nullptr || costs->unseen.empty()) return UnseenReason::kSeen;
   const GridGeometry& geometry = snapshot.description.grid.geometry;
   const Position2 place = snapshot.place_at(x, y);
   CellIndex cell;
-  if (snapshot.costs.unseen.empty() || !geometry.cell_at(place.x, place.y, cell))
-    return UnseenReason::kSeen;
-  return snapshot.costs.unseen[static_cast<std::size_t>(value_of(geometry.id_of(cell)))];
+  if (!geometry.cell_at(place.x, place.y, cell)) return UnseenReason::kSeen;
+  return costs->unseen[static_cast<std::size_t>(value_of(geometry.id_of(cell)))];
 }
 
 /// A fused cell that no description covers.
@@ -186,16 +228,16 @@ double heading_in(const TerrainSnapshot& snapshot, double heading) {
 }  // namespace
 
 Cost TerrainSnapshot::cost_at(double x, double y, double heading) const {
-  return mrpt_terrain::cost_at(description.grid, costs, place_at(x, y), robot,
+  return mrpt_terrain::cost_at(description.grid, costs(), place_at(x, y), robot,
                                heading_in(*this, heading));
 }
 
 Cost TerrainSnapshot::cost_at(double x, double y) const {
-  return mrpt_terrain::cost_at(description.grid, costs, place_at(x, y), robot);
+  return mrpt_terrain::cost_at(description.grid, costs(), place_at(x, y), robot);
 }
 
 Cost TerrainSnapshot::footprint_cost_at(double x, double y, double heading) const {
-  return mrpt_terrain::footprint_cost_at(description.grid, costs, place_at(x, y), robot,
+  return mrpt_terrain::footprint_cost_at(description.grid, costs(), place_at(x, y), robot,
                                          heading_in(*this, heading));
 }
 

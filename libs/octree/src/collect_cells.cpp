@@ -18,6 +18,7 @@ class Collector {
       : options_(options), grid_(resolution), workspace_(workspace) {}
 
   void set_origin(std::uint32_t number, const Place& place) {
+    take_over();
     origin_number_ = number;
     origin_is_finite_ = is_finite(place);
     CellKey key{};
@@ -27,51 +28,66 @@ class Collector {
   [[nodiscard]] std::uint32_t origin_number() const { return origin_number_; }
 
   void add(Place end) {
-    if (!origin_is_finite_ || !is_finite(end)) {
+    if (!origin_is_finite_) {
       ++result_.non_finite;
       return;
     }
-    CellKey end_key{};
-    bool end_in_range = grid_.find_key(end, end_key);
-    if (!end_in_range) ++result_.out_of_range;
-    if (options_.discretize) {
-      if (!end_in_range) return;
-      if (!workspace_.rays.insert(origin_number_, code_of(end_key))) return;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        end[axis] = static_cast<float>(grid_.centre(end_key[axis]));
-      }
-      // The rounded centre of a far, small cell may lie in its neighbour.
-      end_in_range = grid_.find_key(end, end_key);
-    }
-    add_measured(end, end_key, end_in_range);
+    if (options_.discretize && !go_to_new_centre(end)) return;
+    workspace_.ends.add(end);
+    if (workspace_.ends.size == EndBatch::kCapacity) take_over();
   }
 
   [[nodiscard]] InsertionResult finish() {
+    take_over();
     walk();
     return result_;
   }
 
  private:
-  void add_measured(const Place& end, const CellKey& end_key, bool end_in_range) {
-    const bool is_short =
-        options_.max_range < 0.0 || distance_between(origin_.place, end) <= options_.max_range;
-    if (is_short) {
-      if (!end_in_range) return;
-      const CellCode code = code_of(end_key);
-      if (code != last_occupied_) workspace_.cells.mark_occupied(code);
-      last_occupied_ = code;
-      add_ray(end, end_key, code);
-      return;
+  // Replaces the end of a ray by the centre of its cell; false if another ray ends there already.
+  [[nodiscard]] bool go_to_new_centre(Place& end) {
+    if (!is_finite(end)) {
+      ++result_.non_finite;
+      return false;
     }
-    const Place cut = cut_ray(origin_.place, end, options_.max_range);
-    CellKey cut_key{};
-    if (grid_.find_key(cut, cut_key)) add_ray(cut, cut_key, code_of(cut_key));
+    CellKey key{};
+    if (!grid_.find_key(end, key)) {
+      ++result_.out_of_range;
+      return false;
+    }
+    if (!workspace_.rays.insert(origin_number_, code_of(key))) return false;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      end[axis] = static_cast<float>(grid_.centre(key[axis]));
+    }
+    return true;
   }
 
-  void add_ray(const Place& end, const CellKey& key, CellCode code) {
+  // Makes rays of the ends so far.
+  void take_over() {
+    EndBatch& ends = workspace_.ends;
+    ends.measure(origin_, grid_, options_.max_range);
+    for (std::size_t k = 0; k < ends.size; ++k) {
+      const std::uint32_t flags = ends.flags[k];
+      if ((flags & kFiniteEnd) == 0) {
+        ++result_.non_finite;
+        continue;
+      }
+      // The rounded centre of a far, small cell may lie beyond: that is not counted.
+      if ((flags & kEndInRange) == 0 && !options_.discretize) ++result_.out_of_range;
+      if ((flags & kInRange) != 0) add_ray(ends, k);
+    }
+    ends.size = 0;
+  }
+
+  void add_ray(const EndBatch& ends, std::size_t k) {
+    const CellCode code = ends.code[k];
+    if ((ends.flags[k] & kShort) != 0) {
+      if (code != last_occupied_) workspace_.cells.mark_occupied(code);
+      last_occupied_ = code;
+    }
     ++result_.rays;
     if (!origin_in_range_ || code == origin_.code) return;
-    workspace_.batch.add(origin_, end, key, code);
+    workspace_.batch.add(origin_, ends.end(k), ends.cells[k], code);
     if (workspace_.batch.size == RayBatch::kCapacity) walk();
   }
 
@@ -98,6 +114,7 @@ InsertionResult collect_cells(const RayEnds& ends, const RayOrigins& origins,
                               const InsertionOptions& options, double resolution,
                               CollectionWorkspace& workspace) {
   workspace.cells.clear();
+  workspace.ends.size = 0;
   workspace.batch.size = 0;
   if (options.discretize) workspace.rays.reset(ends.size);
   Collector<kTies> collector(options, resolution, workspace);

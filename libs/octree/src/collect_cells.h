@@ -13,6 +13,7 @@ namespace mrpt_terrain::octree {
 struct CollectionWorkspace {
   ScanCells cells;
   RaySet rays;
+  EndBatch ends;
   RayBatch batch;
 };
 

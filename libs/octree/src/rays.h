@@ -31,12 +31,6 @@ struct CellGrid {
   }
 };
 
-/// Length of the vector between two places, computed as in OctoMap.
-[[nodiscard]] double distance_between(const Place& from, const Place& to);
-
-/// End of a ray that is cut at `range`, metres.
-[[nodiscard]] Place cut_ray(const Place& origin, const Place& end, double range);
-
 /// Where rays begin.
 struct RayOrigin {
   Place place{};
@@ -46,6 +40,41 @@ struct RayOrigin {
 
   RayOrigin() = default;
   RayOrigin(const CellGrid& grid, const Place& at, const CellKey& its_key);
+};
+
+/// What is to be done with a ray, as bits.
+enum EndFlags : std::uint32_t {
+  kFiniteEnd = 1,   ///< its end is finite
+  kEndInRange = 2,  ///< in the 2^16 cells per axis
+  kShort = 4,       ///< not longer than the range: it occupies the cell that it ends in
+  kInRange = 8,     ///< where it ends after it was cut lies in the cells
+};
+
+/// Ends of a number of rays of one origin, structure of arrays.
+struct EndBatch {
+  static constexpr std::size_t kCapacity = 512;
+  template <class T>
+  using Row = std::array<T, kCapacity>;
+
+  std::size_t size = 0;
+  alignas(64) std::array<Row<float>, 3> place;  ///< metres
+  // Computed by `measure`, which also cuts rays.
+  alignas(64) Row<CellCode> code;        ///< of the cells that the rays end in, if `kInRange`
+  alignas(64) Row<std::uint32_t> cells;  ///< steps from the origin's cell to that, likewise
+  alignas(64) Row<std::uint32_t> flags;  ///< `EndFlags`
+  // Scratch memory of that.
+  alignas(64) std::array<Row<std::int32_t>, 3> key;
+  alignas(64) Row<double> length;
+
+  void add(const Place& end) {
+    for (std::size_t axis = 0; axis < 3; ++axis) place[axis][size] = end[axis];
+    ++size;
+  }
+  [[nodiscard]] Place end(std::size_t k) const { return {place[0][k], place[1][k], place[2][k]}; }
+  /// Cuts rays that are longer than the range, as OctoMap does, and finds the cells in which they
+  /// end.
+  /// \param max_range metres; negative: rays are not cut
+  void measure(const RayOrigin& from, const CellGrid& grid, double max_range);
 };
 
 /// A number of rays, structure of arrays.
@@ -70,6 +99,18 @@ struct RayBatch {
 
   /// Adds a ray between different cells.
   void add(const RayOrigin& from, const Place& to, const CellKey& to_key, CellCode to_code);
+  /// The same where the number of steps is known.
+  void add(const RayOrigin& from, const Place& to, std::uint32_t steps, CellCode to_code) {
+    const std::size_t k = size++;
+    first[k] = from.code;
+    last[k] = to_code;
+    cells[k] = steps;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      origin[axis][k] = from.place[axis];
+      end[axis][k] = to[axis];
+      centre[axis][k] = from.centre[axis];
+    }
+  }
   /// Computes what the walk needs of all rays, for cells of `resolution` metres.
   void prepare(double resolution);
 };

@@ -3,9 +3,11 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "mrpt_terrain/core/costs.h"
@@ -60,8 +62,28 @@ struct ClusterView {
   MapBox box;                                        ///< about its cells, map frame
 };
 
+/// Scratch memory for the costs of a map's snapshots, which any thread may compute.
+class CostScratch {
+ public:
+  /// Memory that was used before, if nobody else uses it now.
+  [[nodiscard]] std::unique_ptr<CostWorkspace> take();
+  void give_back(std::unique_ptr<CostWorkspace> workspace);
+
+ private:
+  std::mutex mutex_;
+  std::unique_ptr<CostWorkspace> spare_;
+};
+
 /// What a map knew after one insertion. It never changes; whoever holds it may read it while the
-/// map goes on.
+/// map goes on, in any thread. It is handed on, not copied.
+///
+/// **Costs** are derived from the description when somebody first asks for them: `costs`,
+/// `cost_at`, `footprint_cost_at`, and what a map draws in the colours of costs, saves or converts
+/// to an occupancy grid. Who asks first takes the time (doc/costs.md); who asks meanwhile waits for
+/// it; insertion, `cell_at`, `clusters_in`, likelihoods and stored maps do without. They are the
+/// same whoever asks, and end with the snapshot. Asking may throw std::bad_alloc: the next one to
+/// ask tries again. With `fusion = scan` in field mode they need the points' heights, which are
+/// known during the insertion alone, and are computed there.
 ///
 /// The description lies in the frame of a *window*. With `fusion = scan` that is the robot's frame
 /// at the time of the scan; with `fusion = rolling` it is parallel to the map, with the robot near
@@ -78,8 +100,7 @@ class TerrainSnapshot {
   std::vector<std::array<float, 3>> ray_origins;
   std::vector<std::uint32_t> origin_of;
   std::vector<ClusterView> clusters;  ///< one per `description.things`, same numbers
-  CellCosts costs;    ///< per slot of the description's grid; `unseen` per cell of it
-  RobotParams robot;  ///< that the costs are for
+  RobotParams robot;                  ///< that the costs are for
 
   /// With `fusion = rolling`: all cells of the map, also those beyond the window, how they are
   /// read, and what else is known of the window's (per slot). Empty with `fusion = scan`.
@@ -91,6 +112,12 @@ class TerrainSnapshot {
   /// plane z = 0 that lies above or below. Fused cells beyond the window are known without support,
   /// class and cluster.
   [[nodiscard]] CellView cell_at(double x, double y) const;
+
+  /// Per slot of the description's grid; `CellCosts::unseen` per cell of it. Computed by the first
+  /// call, as said above; later ones only look whether that is done.
+  [[nodiscard]] const CellCosts& costs() const;
+  /// The same as far as they are computed already, else null.
+  [[nodiscard]] const CellCosts* known_costs() const;
 
   /// Cost of being at (x, y) of the map, looking along `heading` (radians from the map's x).
   [[nodiscard]] Cost cost_at(double x, double y, double heading) const;
@@ -111,6 +138,12 @@ class TerrainSnapshot {
   /// while the map is empty and for windows on their edge.
   [[nodiscard]] Position2 place_at(double x, double y) const;
 
+  /// For who fills a snapshot: costs are to be computed when they are asked for.
+  /// \param scratch memory for that; null: what is needed is allocated
+  void expect_costs(std::shared_ptr<CostScratch> scratch);
+  /// For who fills a snapshot and knows more than it keeps: the costs, to be overwritten now.
+  [[nodiscard]] CellCosts& give_costs();
+
   /// Fills `clusters` from `description`, without identities.
   void list_clusters();
   /// Gives `clusters` identities, one per cluster, and the things of `description` the same.
@@ -119,6 +152,12 @@ class TerrainSnapshot {
   /// Fills `clusters` from `description`. Things that overlap one of `before` keep its identity.
   /// \param[in,out] next_identity the one to be given out next
   void name_clusters(const TerrainSnapshot* before, std::uint64_t& next_identity);
+
+ private:
+  std::shared_ptr<CostScratch> scratch_;
+  mutable std::mutex computing_;  ///< held while the costs are computed
+  mutable std::atomic<bool> computed_{false};
+  mutable CellCosts costs_;
 };
 
 using TerrainSnapshotPtr = std::shared_ptr<const TerrainSnapshot>;

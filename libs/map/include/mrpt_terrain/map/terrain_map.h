@@ -34,9 +34,10 @@ namespace mrpt_terrain {
 ///
 /// **Threads.** Any number of threads may insert, clear, take snapshots and OctoMaps, draw, save,
 /// serialise, compute likelihoods and convert at the same time. Writers wait for each other;
-/// readers wait for nobody but for the time of copying the OctoMap, and work on what the map was
-/// when they began. Assigning to a map, deserialising into it, and changing its render or generic
-/// parameters is like making it: nobody else may use it meanwhile.
+/// readers wait for nobody but for the time of copying the OctoMap, and for costs of the same
+/// snapshot that another one is computing, and work on what the map was when they began. Assigning
+/// to a map, deserialising into it, and changing its render or generic parameters is like making
+/// it: nobody else may use it meanwhile.
 class CTerrainMap : public mrpt::maps::CMetricMap {
   DEFINE_SERIALIZABLE(CTerrainMap, mrpt_terrain)
 
@@ -57,7 +58,8 @@ class CTerrainMap : public mrpt::maps::CMetricMap {
   [[nodiscard]] TerrainSnapshotPtr snapshot() const;
   /// `TerrainSnapshot::cell_at` of what the map knows now; take a snapshot for more than one.
   [[nodiscard]] CellView cell_at(double x, double y) const;
-  /// `TerrainSnapshot::cost_at` of what the map knows now.
+  /// `TerrainSnapshot::cost_at` of what the map knows now. The first question after an insertion
+  /// computes the costs of all cells: milliseconds, which insertion does not take.
   [[nodiscard]] Cost cost_at(double x, double y, double heading) const;
   /// Clusters whose boxes touch a box of the map.
   [[nodiscard]] std::vector<ClusterView> clusters_in(const MapBox& box) const;
@@ -84,7 +86,7 @@ class CTerrainMap : public mrpt::maps::CMetricMap {
   /// Points of the last scan in the map frame.
   [[nodiscard]] mrpt::maps::CSimplePointsMap::Ptr as_points_map() const;
   /// Costs as an occupancy grid of the window: 1 - cost is the probability of being free, 0.5 where
-  /// nothing is known.
+  /// nothing is known. Asks for costs.
   [[nodiscard]] mrpt::maps::COccupancyGridMap2D::Ptr as_occupancy_grid() const;
   /// Occupied and free voxels of the OctoMap; empty if the map keeps none.
   [[nodiscard]] mrpt::opengl::COctoMapVoxels::Ptr as_voxels() const;
