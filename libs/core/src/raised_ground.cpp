@@ -314,6 +314,22 @@ void look_at_edges(const ElevationGrid& grid, const GroundSegmentation& ground,
   }
 }
 
+// Non-ground cells that are no higher than the plane around.
+void find_level_cells(const ElevationGrid& grid, const GroundSegmentation& ground,
+                      const Blocks& blocks, const RaisedGroundWorkspace& workspace, float least,
+                      FieldCells& cells) {
+  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
+    if (ground.rule[slot] != GroundRule::kHigh) continue;
+    const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
+    const GroundAround& plane = workspace.around[blocks.of(at)];
+    if (!plane.known) continue;
+    const Position2 centre = grid.geometry.centre_of(at);
+    const float around =
+        plane.height_at(static_cast<float>(centre.x), static_cast<float>(centre.y));
+    cells.level[slot] = grid.h_max[slot] < around + least ? 1 : 0;
+  }
+}
+
 }  // namespace
 
 void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
@@ -326,6 +342,7 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
   cells.raised_high.assign(n, 0.0F);
   cells.sharp_edges.assign(n, 0);
   cells.smooth_edges.assign(n, 0);
+  cells.level.assign(n, 0);
   workspace.height.assign(points.size, 0.0F);
   if (field.surface.height.empty()) return;
   const Blocks blocks(grid.geometry, params.block);
@@ -352,6 +369,7 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
     ++cells.raised[slot];
   }
   look_at_edges(grid, ground, workspace, cells);
+  find_level_cells(grid, ground, blocks, workspace, least, cells);
 }
 
 const GroundAround* ground_around(const GridGeometry& geometry, const RaisedGroundParams& params,

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "thing_pieces.h"
+
+#include <cmath>
+
+namespace mrpt_terrain {
+
+std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t slot) {
+  const auto up = [&parent](std::int32_t s) -> std::int32_t& {
+    return parent[static_cast<std::size_t>(s)];
+  };
+  while (up(slot) != slot) {
+    up(slot) = up(up(slot));
+    slot = up(slot);
+  }
+  return slot;
+}
+
+void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
+  a = root_of(parent, a);
+  b = root_of(parent, b);
+  parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+}
+
+void ThingPiece::add(float px, float py, float reference, float lowest, float highest) {
+  const float u = px - first_x, v = py - first_y;
+  n += 1.0F;
+  x += u;
+  y += v;
+  xx += u * u;
+  xy += u * v;
+  yy += v * v;
+  ground += reference;
+  top += highest;
+  low = std::min(low, lowest);
+  high = std::max(high, highest);
+}
+
+void ThingPiece::finish() {
+  const float share = 1.0F / n;
+  const float u = x * share, v = y * share;
+  const float cxx = xx * share - u * u, cxy = xy * share - u * v, cyy = yy * share - v * v;
+  x = first_x + u;
+  y = first_y + v;
+  ground *= share;
+  top *= share;
+  // Direction of the greatest eigenvalue of a symmetric 2 x 2 matrix.
+  const float angle = 0.5F * std::atan2(2.0F * cxy, cxx - cyy);
+  along_x = std::cos(angle);
+  along_y = std::sin(angle);
+}
+
+void ThingPiece::extend(float px, float py) {
+  const float u = along_of(px, py), v = across_of(px, py);
+  begin = std::min(begin, u);
+  end = std::max(end, u);
+  right = std::min(right, v);
+  left = std::max(left, v);
+}
+
+namespace {
+
+/// Centres of cells, asked for in the order of the slots: rows are counted, not divided for.
+class Centres {
+ public:
+  explicit Centres(const ElevationGrid& grid) : grid_(grid) {}
+  Position2 of(std::size_t slot) {
+    const std::int32_t id = value_of(grid_.cell[slot]), stride = grid_.geometry.stride();
+    while (id >= (row_ + 2) * stride) ++row_;
+    return grid_.geometry.centre_of({row_, id - (row_ + 1) * stride - 1});
+  }
+
+ private:
+  const ElevationGrid& grid_;
+  int row_ = 0;
+};
+
+}  // namespace
+
+void ThingPieces::measure() const {
+  std::vector<ThingPiece>& pieces = workspace.pieces;
+  pieces.clear();
+  workspace.number_of.assign(cells.size(), -1);
+  Centres centres(grid);
+  for (std::size_t slot = 0; slot < cells.size(); ++slot) {
+    if (!is_member(slot)) continue;
+    const std::int32_t root = root_of(workspace.parent, static_cast<std::int32_t>(slot));
+    std::int32_t& number = workspace.number_of[static_cast<std::size_t>(root)];
+    const Position2 at = centres.of(slot);
+    const auto x = static_cast<float>(at.x), y = static_cast<float>(at.y);
+    if (number < 0) {
+      number = static_cast<std::int32_t>(pieces.size());
+      pieces.emplace_back();
+      pieces.back().slot = root;
+      pieces.back().first_x = x;
+      pieces.back().first_y = y;
+    }
+    workspace.number_of[slot] = number;
+    ThingPiece& piece = pieces[static_cast<std::size_t>(number)];
+    piece.add(x, y, cells.ground[slot], low_of(cells, slot), high_of(cells, slot));
+    piece.hangs = piece.hangs || (cells.on[slot] > 0 && hangs(slot));
+  }
+  for (ThingPiece& piece : pieces) piece.finish();
+  Centres again(grid);
+  for (std::size_t slot = 0; slot < cells.size(); ++slot) {
+    if (workspace.number_of[slot] < 0) continue;
+    const Position2 at = again.of(slot);
+    pieces[static_cast<std::size_t>(workspace.number_of[slot])].extend(static_cast<float>(at.x),
+                                                                       static_cast<float>(at.y));
+  }
+}
+
+}  // namespace mrpt_terrain
