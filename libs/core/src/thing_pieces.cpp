@@ -64,15 +64,22 @@ namespace {
 class Centres {
  public:
   explicit Centres(const ElevationGrid& grid) : grid_(grid) {}
-  Position2 of(std::size_t slot) {
+  void move_to(std::size_t slot) {
     const std::int32_t id = value_of(grid_.cell[slot]), stride = grid_.geometry.stride();
-    while (id >= (row_ + 2) * stride) ++row_;
-    return grid_.geometry.centre_of({row_, id - (row_ + 1) * stride - 1});
+    while (id >= end_) {
+      ++row_;
+      end_ += stride;
+    }
+    const Position2 at = grid_.geometry.centre_of({row_, id - end_ + stride - 1});
+    x = static_cast<float>(at.x);
+    y = static_cast<float>(at.y);
   }
+  float x = 0.0F, y = 0.0F;
 
  private:
   const ElevationGrid& grid_;
-  int row_ = 0;
+  int row_ = -1;
+  std::int32_t end_ = grid_.geometry.stride();  ///< first cell of the next row
 };
 
 }  // namespace
@@ -82,31 +89,39 @@ void ThingPieces::measure() const {
   pieces.clear();
   workspace.number_of.assign(cells.size(), -1);
   Centres centres(grid);
+  std::vector<std::int32_t>& members = workspace.points_of;
+  members.resize(cells.size());
+  std::size_t count = 0;
   for (std::size_t slot = 0; slot < cells.size(); ++slot) {
-    if (!is_member(slot)) continue;
-    const std::int32_t root = root_of(workspace.parent, static_cast<std::int32_t>(slot));
-    std::int32_t& number = workspace.number_of[static_cast<std::size_t>(root)];
-    const Position2 at = centres.of(slot);
-    const auto x = static_cast<float>(at.x), y = static_cast<float>(at.y);
-    if (number < 0) {
-      number = static_cast<std::int32_t>(pieces.size());
+    members[count] = static_cast<std::int32_t>(slot);
+    count += is_member(slot) ? 1 : 0;
+  }
+  members.resize(count);
+  for (const std::int32_t member : members) {
+    const auto slot = static_cast<std::size_t>(member);
+    // The parent of a cell is an earlier one, or itself.
+    const std::int32_t parent = workspace.parent[slot];
+    const bool first = parent == static_cast<std::int32_t>(slot);
+    centres.move_to(slot);
+    if (first) {
+      workspace.number_of[slot] = static_cast<std::int32_t>(pieces.size());
       pieces.emplace_back();
-      pieces.back().slot = root;
-      pieces.back().first_x = x;
-      pieces.back().first_y = y;
+      pieces.back().slot = parent;
+      pieces.back().first_x = centres.x;
+      pieces.back().first_y = centres.y;
     }
+    const std::int32_t number = workspace.number_of[static_cast<std::size_t>(parent)];
     workspace.number_of[slot] = number;
     ThingPiece& piece = pieces[static_cast<std::size_t>(number)];
-    piece.add(x, y, cells.ground[slot], low_of(cells, slot), high_of(cells, slot));
+    piece.add(centres.x, centres.y, cells.ground[slot], low_of(cells, slot), high_of(cells, slot));
     piece.hangs = piece.hangs || (cells.on[slot] > 0 && hangs(slot));
   }
   for (ThingPiece& piece : pieces) piece.finish();
   Centres again(grid);
-  for (std::size_t slot = 0; slot < cells.size(); ++slot) {
-    if (workspace.number_of[slot] < 0) continue;
-    const Position2 at = again.of(slot);
-    pieces[static_cast<std::size_t>(workspace.number_of[slot])].extend(static_cast<float>(at.x),
-                                                                       static_cast<float>(at.y));
+  for (const std::int32_t member : members) {
+    const auto slot = static_cast<std::size_t>(member);
+    again.move_to(slot);
+    pieces[static_cast<std::size_t>(workspace.number_of[slot])].extend(again.x, again.y);
   }
 }
 

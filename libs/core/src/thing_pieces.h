@@ -37,8 +37,10 @@ struct ThingPieces {
 
   /// Whether a cell is of a thing that is no hole.
   [[nodiscard]] bool is_member(std::size_t slot) const {
-    return ground.rule[slot] != GroundRule::kLow &&
-           (!ground.is_ground(slot) || cells.raised[slot] > 0);
+    // Without branches, as nothing tells which way the next one goes.
+    const auto is = [&](GroundRule rule) { return static_cast<int>(ground.rule[slot] == rule); };
+    const int raised = static_cast<int>(cells.raised[slot] > 0);
+    return ((is(GroundRule::kLow) ^ 1) & ((is(GroundRule::kGround) ^ 1) | raised)) != 0;
   }
   /// Whether the points of a cell are high above the ground and lie flat, as those of a table do.
   [[nodiscard]] bool hangs(std::size_t slot) const {
