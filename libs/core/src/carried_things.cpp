@@ -12,7 +12,7 @@ namespace {
 // seen of that which they carry, metres.
 constexpr float kLegWidth = 0.3F;
 constexpr float kLegHeight = 1.5F;
-constexpr double kLegReach = 0.6;
+constexpr double kLegReach = 0.8;
 // Four legs: sides of their rectangle, by how much their heights may differ, by how much the
 // fourth may be off, metres; cosine of the angle between two sides.
 constexpr float kShortSide = 0.4F, kLongSide = 2.0F;

@@ -27,6 +27,8 @@ constexpr double kPrior = 0.5;
 // the raised cell's height.
 constexpr int kEdgeReach = 2;
 constexpr float kSharp = 0.5F;
+// What is higher above the reference is not looked at: the reference is never so far too low.
+constexpr float kMostLevel = 0.5F;
 // Fewer samples, or fewer that count, are no plane.
 constexpr std::size_t kFewestSamples = 8;
 constexpr double kLeastShare = 0.25;
@@ -319,7 +321,7 @@ void find_level_cells(const ElevationGrid& grid, const GroundSegmentation& groun
                       const Blocks& blocks, const RaisedGroundWorkspace& workspace, float least,
                       FieldCells& cells) {
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
-    if (ground.rule[slot] != GroundRule::kHigh) continue;
+    if (ground.rule[slot] != GroundRule::kHigh || cells.high[slot] > kMostLevel) continue;
     const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
     const GroundAround& plane = workspace.around[blocks.of(at)];
     if (!plane.known) continue;

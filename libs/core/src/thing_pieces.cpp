@@ -5,23 +5,6 @@
 
 namespace mrpt_terrain {
 
-std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t slot) {
-  const auto up = [&parent](std::int32_t s) -> std::int32_t& {
-    return parent[static_cast<std::size_t>(s)];
-  };
-  while (up(slot) != slot) {
-    up(slot) = up(up(slot));
-    slot = up(slot);
-  }
-  return slot;
-}
-
-void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
-  a = root_of(parent, a);
-  b = root_of(parent, b);
-  parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-}
-
 void ThingPiece::add(float px, float py, float reference, float lowest, float highest) {
   const float u = px - first_x, v = py - first_y;
   n += 1.0F;

@@ -12,10 +12,23 @@
 namespace mrpt_terrain {
 
 /// The slot that stands for the thing of a slot: its first one. Shortens the way there.
-std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t slot);
+inline std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t slot) {
+  const auto up = [&parent](std::int32_t s) -> std::int32_t& {
+    return parent[static_cast<std::size_t>(s)];
+  };
+  while (up(slot) != slot) {
+    up(slot) = up(up(slot));
+    slot = up(slot);
+  }
+  return slot;
+}
 
 /// Makes one thing of those of two slots.
-void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b);
+inline void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
+  a = root_of(parent, a);
+  b = root_of(parent, b);
+  parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+}
 
 /// Lowest and highest point of a thing in a cell, metres above the ground.
 inline float low_of(const FieldCells& cells, std::size_t slot) {
