@@ -318,12 +318,11 @@ void look_at_edges(const ElevationGrid& grid, const GroundSegmentation& ground,
 
 // Non-ground cells that are no higher than the plane around.
 void find_level_cells(const ElevationGrid& grid, const GroundSegmentation& ground,
-                      const Blocks& blocks, const RaisedGroundWorkspace& workspace, float least,
-                      FieldCells& cells) {
+                      const RaisedGroundWorkspace& workspace, float least, FieldCells& cells) {
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
     if (ground.rule[slot] != GroundRule::kHigh || cells.high[slot] > kMostLevel) continue;
     const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
-    const GroundAround& plane = workspace.around[blocks.of(at)];
+    const GroundAround& plane = workspace.around[static_cast<std::size_t>(workspace.block[slot])];
     if (!plane.known) continue;
     const Position2 centre = grid.geometry.centre_of(at);
     const float around =
@@ -371,7 +370,7 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
     ++cells.raised[slot];
   }
   look_at_edges(grid, ground, workspace, cells);
-  find_level_cells(grid, ground, blocks, workspace, least, cells);
+  find_level_cells(grid, ground, workspace, least, cells);
 }
 
 const GroundAround* ground_around(const GridGeometry& geometry, const RaisedGroundParams& params,
