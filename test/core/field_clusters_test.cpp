@@ -43,6 +43,7 @@ Cells drawn(const Rows& rows) {
   for (auto* counts : {&field.on, &field.above, &field.below, &field.raised}) counts->assign(n, 0);
   for (auto* counts : {&field.sharp_edges, &field.smooth_edges}) counts->assign(n, 0);
   field.deck.assign(n, -1);
+  field.level.assign(n, 0);
   for (std::size_t slot = 0; slot < n; ++slot) {
     const CellIndex at = result.grid.geometry.index_of(result.grid.cell[slot]);
     const char mark = rows[static_cast<std::size_t>(at.l)][static_cast<std::size_t>(at.w)];

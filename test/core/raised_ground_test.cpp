@@ -94,6 +94,28 @@ TEST(RaisedGround, CellsCountTheirRaisedPoints) {
   EXPECT_EQ(result.cells.raised, count);
 }
 
+// A box stands above the plane of the ground, cells of the ground that are taken for things do not.
+TEST(RaisedGround, NonGroundCellsMayBeNoHigherThanTheGroundAround) {
+  Points points = patch([](double x, double) { return 0.05 * x; });
+  worlds::add_box(points, {2.0, 3.0, 1.0, 2.0}, 0.5, 0.05);
+  Raised result;
+  worlds::measure(points, field_params(), result);
+  const auto slot_of = [&](double x, double y) {
+    CellIndex cell;
+    EXPECT_TRUE(result.grid.geometry.cell_at(x, y, cell));
+    return static_cast<std::size_t>(result.grid.slot_at(cell));
+  };
+  const std::size_t box = slot_of(2.1, 1.1), open = slot_of(-2.1, 1.1),
+                    ground = slot_of(-2.1, -2.1);
+  ASSERT_EQ(result.ground.rule[box], GroundRule::kHigh);
+  result.ground.rule[open] = GroundRule::kHigh;
+  find_raised_ground(points.view(), result.field, result.grid, result.ground, result.point_slots,
+                     {}, result.workspace, result.cells);
+  EXPECT_EQ(result.cells.level[box], 0);
+  EXPECT_EQ(result.cells.level[open], 1);
+  EXPECT_EQ(result.cells.level[ground], 0);
+}
+
 int sum(const std::vector<std::int8_t>& values) {
   int total = 0;
   for (const std::int8_t value : values) total += value;

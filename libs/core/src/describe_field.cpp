@@ -96,7 +96,8 @@ void describe_field(const ScanView& scan, const DescriptionParams& params,
   find_overhangs(description.grid, params.overhangs, description.field);
   done(Stage::kGrid);
   find_field_clusters(description.grid, description.ground, description.field,
-                      params.field_clusters, workspace.field_clusters, description.clusters);
+                      params.field_clusters, workspace.field_clusters, description.clusters,
+                      scan.origins.known() ? &scan.origins.of(0) : nullptr);
   find_cluster_slots(workspace, description.ground, workspace.cluster_slots);
   done(Stage::kClusters);
   measure_things(stage, workspace, description);

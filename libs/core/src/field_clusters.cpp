@@ -4,29 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carried_things.h"
+#include "continued_things.h"
+#include "thing_pieces.h"
+
 namespace mrpt_terrain {
 namespace {
 
 // Widest gap, cells, however far away.
 constexpr int kMostReach = 3;
-
-std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t slot) {
-  const auto up = [&parent](std::int32_t s) -> std::int32_t& {
-    return parent[static_cast<std::size_t>(s)];
-  };
-  while (up(slot) != slot) {
-    up(slot) = up(up(slot));
-    slot = up(slot);
-  }
-  return slot;
-}
-
-// The first slot of a thing is its root.
-void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
-  a = root_of(parent, a);
-  b = root_of(parent, b);
-  parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-}
 
 /// What decides whether two cells are of one thing.
 struct Linker {
@@ -40,14 +26,8 @@ struct Linker {
   [[nodiscard]] bool is_member(std::size_t slot) const {
     return !ground.is_ground(slot) || cells.raised[slot] > 0;
   }
-  [[nodiscard]] float low(std::size_t slot) const {
-    if (cells.raised[slot] == 0) return cells.low[slot];
-    return cells.above[slot] == 0 ? cells.raised_low[slot]
-                                  : std::min(cells.low[slot], cells.raised_low[slot]);
-  }
-  [[nodiscard]] float high(std::size_t slot) const {
-    return std::max(cells.high[slot], cells.raised_high[slot]);
-  }
+  [[nodiscard]] float low(std::size_t slot) const { return low_of(cells, slot); }
+  [[nodiscard]] float high(std::size_t slot) const { return high_of(cells, slot); }
   [[nodiscard]] bool is_hole(std::size_t slot) const {
     return ground.rule[slot] == GroundRule::kLow;
   }
@@ -143,6 +123,7 @@ void count_members(const Linker& linker, FieldClusterWorkspace& workspace) {
   const FieldCells& cells = linker.cells;
   const std::size_t n = cells.size();
   workspace.cells_of.assign(n, 0);
+  workspace.stands.assign(n, 0);
   for (auto* counts :
        {&workspace.points_of, &workspace.sharp_of, &workspace.smooth_of, &workspace.above_of})
     counts->assign(n, 0);
@@ -151,6 +132,7 @@ void count_members(const Linker& linker, FieldClusterWorkspace& workspace) {
     workspace.parent[slot] = root_of(workspace.parent, static_cast<std::int32_t>(slot));
     const auto root = static_cast<std::size_t>(workspace.parent[slot]);
     ++workspace.cells_of[root];
+    if (cells.level[slot] == 0) workspace.stands[root] = 1;
     workspace.sharp_of[root] += cells.sharp_edges[slot];
     workspace.smooth_of[root] += cells.smooth_edges[slot];
     // The floor of a hole is ground, but never a swell.
@@ -174,7 +156,8 @@ void number_things(const FieldClusterParams& params, FieldClusterWorkspace& work
     const bool swell =
         5 * workspace.above_of[root] < workspace.points_of[root] &&
         (workspace.sharp_of[root] == 0 || workspace.sharp_of[root] < params.sharp * edges);
-    if (swell || (cells < params.t_c && workspace.points_of[root] < params.t_points)) {
+    const bool level = workspace.stands[root] == 0;
+    if (level || swell || (cells < params.t_c && workspace.points_of[root] < params.t_points)) {
       ++result.dropped;
       continue;
     }
@@ -188,7 +171,8 @@ void number_things(const FieldClusterParams& params, FieldClusterWorkspace& work
 
 void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& ground,
                          const FieldCells& cells, const FieldClusterParams& params,
-                         FieldClusterWorkspace& workspace, Clusters& result) {
+                         FieldClusterWorkspace& workspace, Clusters& result,
+                         const std::array<float, 3>* sensor) {
   const Linker linker{grid,
                       ground,
                       cells,
@@ -207,6 +191,10 @@ void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& gr
   const UnseenLinker unseen(linker, params);
   for (std::size_t slot = 0; slot < n; ++slot)
     unseen.link_back(slot, workspace.raised, workspace.parent);
+  const ThingPieces pieces{grid, ground, cells, params, workspace};
+  pieces.measure();
+  link_carried_things(pieces);
+  if (sensor != nullptr) link_continued_things(pieces, *sensor);
   count_members(linker, workspace);
   number_things(params, workspace, result);
   result.cluster_of.assign(n, kNoCluster);

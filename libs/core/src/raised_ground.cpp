@@ -27,6 +27,8 @@ constexpr double kPrior = 0.5;
 // the raised cell's height.
 constexpr int kEdgeReach = 2;
 constexpr float kSharp = 0.5F;
+// What is higher above the reference is not looked at: the reference is never so far too low.
+constexpr float kMostLevel = 0.5F;
 // Fewer samples, or fewer that count, are no plane.
 constexpr std::size_t kFewestSamples = 8;
 constexpr double kLeastShare = 0.25;
@@ -314,6 +316,21 @@ void look_at_edges(const ElevationGrid& grid, const GroundSegmentation& ground,
   }
 }
 
+// Non-ground cells that are no higher than the plane around.
+void find_level_cells(const ElevationGrid& grid, const GroundSegmentation& ground,
+                      const RaisedGroundWorkspace& workspace, float least, FieldCells& cells) {
+  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
+    if (ground.rule[slot] != GroundRule::kHigh || cells.high[slot] > kMostLevel) continue;
+    const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
+    const GroundAround& plane = workspace.around[static_cast<std::size_t>(workspace.block[slot])];
+    if (!plane.known) continue;
+    const Position2 centre = grid.geometry.centre_of(at);
+    const float around =
+        plane.height_at(static_cast<float>(centre.x), static_cast<float>(centre.y));
+    cells.level[slot] = grid.h_max[slot] < around + least ? 1 : 0;
+  }
+}
+
 }  // namespace
 
 void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
@@ -326,6 +343,7 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
   cells.raised_high.assign(n, 0.0F);
   cells.sharp_edges.assign(n, 0);
   cells.smooth_edges.assign(n, 0);
+  cells.level.assign(n, 0);
   workspace.height.assign(points.size, 0.0F);
   if (field.surface.height.empty()) return;
   const Blocks blocks(grid.geometry, params.block);
@@ -352,6 +370,7 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
     ++cells.raised[slot];
   }
   look_at_edges(grid, ground, workspace, cells);
+  find_level_cells(grid, ground, workspace, least, cells);
 }
 
 const GroundAround* ground_around(const GridGeometry& geometry, const RaisedGroundParams& params,

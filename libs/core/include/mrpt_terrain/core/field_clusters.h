@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -47,6 +48,39 @@ struct FieldClusterParams {
   }
 };
 
+/// Cells that were brought together: where they lie, and their rectangle along the direction in
+/// which they extend most. Places are those of centres of cells, metres, frame of the grid.
+struct ThingPiece {
+  std::int32_t slot = 0;                 ///< its first cell
+  float first_x = 0.0F, first_y = 0.0F;  ///< where that is; sums are taken about it
+  float n = 0.0F;                        ///< cells
+  float x = 0.0F, y = 0.0F;              ///< mean
+  float xx = 0.0F, xy = 0.0F, yy = 0.0F;
+  float ground = 0.0F;             ///< mean height of the ground reference
+  float top = 0.0F;                ///< mean over the cells of their highest points above it
+  float low = 1e9F, high = -1e9F;  ///< lowest and highest point above it
+  bool hangs = false;              ///< some of it lies flat above ground that is seen
+  float along_x = 1.0F, along_y = 0.0F;
+  float begin = 1e9F, end = -1e9F, right = 1e9F, left = -1e9F;  ///< of the rectangle, about x, y
+
+  /// Adds a cell to the sums: centre, height of the reference, lowest and highest point above it.
+  void add(float px, float py, float reference, float lowest, float highest);
+  /// Makes means and the direction of the sums.
+  void finish();
+  /// Makes the rectangle hold a centre of a cell.
+  void extend(float px, float py);
+  [[nodiscard]] float along_of(float px, float py) const {
+    return (px - x) * along_x + (py - y) * along_y;
+  }
+  [[nodiscard]] float across_of(float px, float py) const {
+    return (py - y) * along_x - (px - x) * along_y;
+  }
+  [[nodiscard]] Position2 place(float along, float across) const {
+    return {static_cast<double>(x + along * along_x - across * along_y),
+            static_cast<double>(y + along * along_y + across * along_x)};
+  }
+};
+
 /// Scratch memory of `find_field_clusters`.
 struct FieldClusterWorkspace {
   CellBits members, raised;          ///< cells of things so far; of these, ground that is raised
@@ -55,13 +89,21 @@ struct FieldClusterWorkspace {
   std::vector<std::int32_t> points_of;
   std::vector<std::int32_t> number_of;
   std::vector<std::int32_t> sharp_of, smooth_of, above_of;
+  std::vector<std::uint8_t>
+      stands;  ///< per slot: 1 if a cell of the thing stands out of the ground
+  std::vector<ThingPiece> pieces;
+  std::vector<std::int32_t> posts;  ///< numbers of pieces
 };
 
 /// Brings non-ground cells together that are near each other, in the plane and in height. Cells
 /// above the ground and cells below it are never one thing. How near is enough grows with distance,
-/// as the gaps between rings and between columns of a sensor do.
+/// as the gaps between rings and between columns of a sensor do. Then pieces of a thing are brought
+/// together that are farther apart: what hangs and its legs, and what goes on behind a gap through
+/// which no beam has passed.
+/// \param sensor where the beams begin, frame of the grid, metres; null: unknown, gaps stay gaps
 void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& ground,
                          const FieldCells& cells, const FieldClusterParams& params,
-                         FieldClusterWorkspace& workspace, Clusters& result);
+                         FieldClusterWorkspace& workspace, Clusters& result,
+                         const std::array<float, 3>* sensor = nullptr);
 
 }  // namespace mrpt_terrain

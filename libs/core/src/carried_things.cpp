@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "carried_things.h"
+
+#include <cmath>
+
+#include "slots_around.h"
+
+namespace mrpt_terrain {
+namespace {
+
+// Legs are at most so wide (centres of cells), at most so high, and at most so far from what is
+// seen of that which they carry, metres.
+constexpr float kLegWidth = 0.3F;
+constexpr float kLegHeight = 1.5F;
+constexpr double kLegReach = 0.8;
+// Four legs: sides of their rectangle, by how much their heights may differ, by how much the
+// fourth may be off, metres; cosine of the angle between two sides.
+constexpr float kShortSide = 0.4F, kLongSide = 2.0F;
+constexpr float kAsHigh = 0.15F;
+constexpr float kCorner = 0.25F;
+constexpr float kSquare = 0.2F;
+
+bool is_post(const ThingPiece& piece, const FieldClusterParams& params) {
+  return piece.end - piece.begin <= kLegWidth && piece.left - piece.right <= kLegWidth &&
+         piece.high > static_cast<float>(params.step) && piece.high < kLegHeight &&
+         piece.high - piece.low > static_cast<float>(params.flat);
+}
+
+void link_to_hanging(const ThingPieces& pieces, const ThingPiece& leg) {
+  const int reach = static_cast<int>(std::lround(kLegReach / pieces.grid.geometry.cell_size()));
+  const auto level = static_cast<float>(pieces.params.level);
+  const auto step = static_cast<float>(pieces.params.step);
+  for_slots_around(pieces.grid, static_cast<std::size_t>(leg.slot), reach, [&](std::size_t other) {
+    const ThingPiece* carried = pieces.of(other);
+    if (carried == nullptr || carried == &leg || !carried->hangs || !pieces.hangs(other)) return;
+    if (leg.high > pieces.cells.high[other] + level || leg.high < pieces.cells.low[other] - step)
+      return;
+    pieces.unite(leg.slot, carried->slot);
+  });
+}
+
+bool is_side(const ThingPiece& a, const ThingPiece& b) {
+  const float length = std::hypot(a.x - b.x, a.y - b.y);
+  return std::abs(a.high - b.high) <= kAsHigh && length >= kShortSide && length <= kLongSide;
+}
+
+bool is_right_angle(const ThingPiece& corner, const ThingPiece& a, const ThingPiece& b) {
+  const float ux = a.x - corner.x, uy = a.y - corner.y;
+  const float vx = b.x - corner.x, vy = b.y - corner.y;
+  return std::abs(ux * vx + uy * vy) <= kSquare * std::hypot(ux, uy) * std::hypot(vx, vy);
+}
+
+// Whether a post is the fourth corner of a rectangle.
+bool is_opposite(const ThingPiece& corner, const ThingPiece& a, const ThingPiece& b,
+                 const ThingPiece& opposite) {
+  return std::abs(corner.high - opposite.high) <= kAsHigh &&
+         std::hypot(opposite.x - a.x - b.x + corner.x, opposite.y - a.y - b.y + corner.y) <=
+             kCorner;
+}
+
+void link_rectangles(const ThingPieces& pieces) {
+  const std::vector<std::int32_t>& posts = pieces.workspace.posts;
+  const auto piece = [&pieces](std::int32_t number) -> const ThingPiece& {
+    return pieces.all()[static_cast<std::size_t>(number)];
+  };
+  for (const std::int32_t corner : posts) {
+    const ThingPiece& c = piece(corner);
+    for (std::size_t i = 0; i < posts.size(); ++i) {
+      const ThingPiece& a = piece(posts[i]);
+      if (!is_side(c, a)) continue;
+      for (std::size_t k = i + 1; k < posts.size(); ++k) {
+        const ThingPiece& b = piece(posts[k]);
+        if (!is_side(c, b) || !is_right_angle(c, a, b)) continue;
+        for (const std::int32_t opposite : posts) {
+          const ThingPiece& d = piece(opposite);
+          if (opposite == corner || !is_opposite(c, a, b, d)) continue;
+          for (const ThingPiece* leg : {&a, &b, &d}) pieces.unite(c.slot, leg->slot);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void link_carried_things(const ThingPieces& pieces) {
+  std::vector<std::int32_t>& posts = pieces.workspace.posts;
+  posts.clear();
+  for (std::size_t k = 0; k < pieces.all().size(); ++k)
+    if (is_post(pieces.all()[k], pieces.params)) posts.push_back(static_cast<std::int32_t>(k));
+  for (const std::int32_t post : posts)
+    link_to_hanging(pieces, pieces.all()[static_cast<std::size_t>(post)]);
+  link_rectangles(pieces);
+}
+
+}  // namespace mrpt_terrain

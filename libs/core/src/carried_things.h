@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "thing_pieces.h"
+
+namespace mrpt_terrain {
+
+/// Unites what hangs above ground that is seen with its legs: narrow things beside it that end
+/// there. And four posts at the corners of a rectangle, which carry something that no ring meets.
+/// \param pieces measured
+void link_carried_things(const ThingPieces& pieces);
+
+}  // namespace mrpt_terrain

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "continued_things.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mrpt_terrain {
+namespace {
+
+// A thing is long from this length on, metres, if it is so many times as long as wide.
+constexpr float kLong = 1.0F;
+constexpr float kSlender = 2.5F;
+// A gap is at most as long as the thing, and never longer than this, metres.
+constexpr float kWidestGap = 4.0F;
+// The tops of the two sides may differ by this share of the higher one.
+constexpr float kTopShare = 0.3F;
+// Low things, such as curbs, are at most so high and so wide across the line through both, and
+// rings are at most so far apart on them, metres; of fewer cells nothing tells that line.
+constexpr float kLow = 0.3F, kLowWidth = 0.8F;
+constexpr float kRingGap = 2.0F;
+constexpr float kFewestCells = 2.0F;
+// Beams are followed so far behind a gap; over level ground no farther than where they would have
+// to come down, and this much more, metres.
+constexpr float kBehind = 12.0F;
+constexpr float kUneven = 2.0F;
+// How far below the top of a thing a beam has to be to have passed where it would stand, metres.
+constexpr float kMargin = 0.03F;
+
+/// A line along which two things may be one; places on it are metres from the middle of the first.
+struct Line {
+  float x, y;
+  float along_x, along_y;
+
+  [[nodiscard]] float along_of(const Position2& at) const {
+    return (static_cast<float>(at.x) - x) * along_x + (static_cast<float>(at.y) - y) * along_y;
+  }
+  [[nodiscard]] float across_of(const Position2& at) const {
+    return (static_cast<float>(at.y) - y) * along_x - (static_cast<float>(at.x) - x) * along_y;
+  }
+  [[nodiscard]] Position2 place(float along, float across) const {
+    return {static_cast<double>(x + along * along_x - across * along_y),
+            static_cast<double>(y + along * along_y + across * along_x)};
+  }
+};
+
+/// Ends of the things on both sides of a gap, along a line.
+struct Gap {
+  float begin, end;
+  [[nodiscard]] float length() const { return end - begin; }
+};
+
+/// Extent of a thing against a line.
+struct Extent {
+  float begin = 1e9F, end = -1e9F, right = 1e9F, left = -1e9F;
+
+  void add(const ThingPiece& piece, const Line& line) {
+    for (const float along : {piece.begin, piece.end}) {
+      for (const float across : {piece.right, piece.left}) {
+        const Position2 corner = piece.place(along, across);
+        const float u = line.along_of(corner), v = line.across_of(corner);
+        begin = std::min(begin, u);
+        end = std::max(end, u);
+        right = std::min(right, v);
+        left = std::max(left, v);
+      }
+    }
+  }
+};
+
+class Continuation {
+ public:
+  Continuation(const ThingPieces& pieces, const std::array<float, 3>& sensor)
+      : pieces_(pieces),
+        cells_(pieces.cells),
+        sensor_(sensor),
+        level_(static_cast<float>(pieces.params.level)),
+        cell_(static_cast<float>(pieces.grid.geometry.cell_size())) {}
+
+  void link_long_things() const {
+    for (const ThingPiece& piece : pieces_.all()) {
+      const float length = piece.end - piece.begin + cell_;
+      const float width = piece.left - piece.right + cell_;
+      if (length < kLong || length < kSlender * width) continue;
+      const float middle = 0.5F * (piece.left + piece.right);
+      const Position2 at = piece.place(0.0F, middle);
+      const auto x = static_cast<float>(at.x), y = static_cast<float>(at.y);
+      follow(piece, {x, y, piece.along_x, piece.along_y}, piece.end);
+      follow(piece, {x, y, -piece.along_x, -piece.along_y}, -piece.begin);
+    }
+  }
+
+  void link_low_things() const {
+    std::vector<std::int32_t>& low = pieces_.workspace.posts;
+    low.clear();
+    const std::vector<ThingPiece>& all = pieces_.all();
+    for (std::size_t k = 0; k < all.size(); ++k)
+      if (all[k].high <= kLow && all[k].n >= kFewestCells)
+        low.push_back(static_cast<std::int32_t>(k));
+    for (std::size_t b = 1; b < low.size(); ++b) {
+      const ThingPiece& q = all[static_cast<std::size_t>(low[b])];
+      for (std::size_t a = 0; a < b; ++a) {
+        const ThingPiece& p = all[static_cast<std::size_t>(low[a])];
+        const float dx = q.x - p.x, dy = q.y - p.y;
+        const float reach = kRingGap + p.end - p.begin + q.end - q.begin;
+        if (dx * dx + dy * dy <= reach * reach && is_interrupted(p, q))
+          pieces_.unite(p.slot, q.slot);
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] Slot slot_at(const Position2& at) const {
+    CellIndex cell;
+    return pieces_.grid.geometry.cell_at(at.x, at.y, cell) ? pieces_.grid.slot_at(cell)
+                                                           : kUnobserved;
+  }
+
+  // Looks along a long thing, from its end on, for what it goes on with.
+  void follow(const ThingPiece& piece, const Line& line, float end) const {
+    const float length = piece.end - piece.begin + cell_;
+    const float limit = end + std::min(kWidestGap, length);
+    for (float s = end + cell_; s <= limit + cell_; s += cell_) {
+      bool own = false;
+      const ThingPiece* met = nullptr;
+      for (const float across : {0.0F, -cell_, cell_}) {
+        const Slot seen = slot_at(line.place(s, across));
+        if (seen == kUnobserved) continue;
+        const bool member = pieces_.is_member(static_cast<std::size_t>(seen));
+        if (!member && across == 0.0F) return;  // the ground is seen there
+        if (!member) continue;
+        if (pieces_.same_thing(seen, piece.slot)) {
+          own = true;
+        } else if (met == nullptr) {
+          met = pieces_.of(static_cast<std::size_t>(seen));
+        }
+      }
+      const Gap gap{end, s};
+      if (!own && (met == nullptr || !goes_on(piece, *met, line, gap))) continue;
+      if (!own) pieces_.unite(piece.slot, met->slot);
+      end = s;
+    }
+  }
+
+  [[nodiscard]] bool goes_on(const ThingPiece& piece, const ThingPiece& other, const Line& line,
+                             const Gap& gap) const {
+    const float higher = std::max(piece.top, other.top);
+    if (std::abs(piece.top - other.top) > std::max(level_, kTopShare * higher)) return false;
+    // A cell, and what the direction may be off by over the gap.
+    const float length = piece.end - piece.begin + cell_;
+    const float half =
+        0.5F * (piece.left - piece.right) + cell_ + 0.5F * cell_ * gap.length() / length;
+    Extent extent;
+    extent.add(other, line);
+    return extent.right >= -half && extent.left <= half && is_closed(piece, other, line, gap);
+  }
+
+  // Whether two low things are parts of one, seen by two rings.
+  [[nodiscard]] bool is_interrupted(const ThingPiece& p, const ThingPiece& q) const {
+    if (std::abs(p.top - q.top) > std::min(level_, kTopShare * std::max(p.top, q.top)))
+      return false;
+    const float length = std::hypot(q.x - p.x, q.y - p.y);
+    if (length < cell_) return false;
+    const Line line{p.x, p.y, (q.x - p.x) / length, (q.y - p.y) / length};
+    Extent first, second;
+    first.add(p, line);
+    second.add(q, line);
+    const float width = std::max(first.left, second.left) - std::min(first.right, second.right);
+    const Gap gap{first.end, second.begin};
+    if (width > kLowWidth || gap.length() > kRingGap) return false;
+    for (float s = gap.begin + cell_; s < gap.end; s += cell_) {
+      const Slot seen = slot_at(line.place(s, 0.0F));
+      if (seen != kUnobserved && !pieces_.is_member(static_cast<std::size_t>(seen))) return false;
+    }
+    return is_closed(p, q, line, gap);
+  }
+
+  // Whether no beam has passed through the gap between two things.
+  [[nodiscard]] bool is_closed(const ThingPiece& piece, const ThingPiece& other, const Line& line,
+                               const Gap& gap) const {
+    const float top = std::min(piece.top, other.top);
+    for (float s = gap.begin + cell_; s < gap.end; s += cell_) {
+      const float share = (s - gap.begin) / gap.length();
+      const float ground = piece.ground + share * (other.ground - piece.ground);
+      if (is_passed(line.place(s, 0.0F), ground, ground + top)) return false;
+    }
+    return true;
+  }
+
+  // Whether a beam that ends behind a place has passed it below a height.
+  [[nodiscard]] bool is_passed(const Position2& at, float ground, float top) const {
+    const float dx = static_cast<float>(at.x) - sensor_[0];
+    const float dy = static_cast<float>(at.y) - sensor_[1];
+    const float range = std::hypot(dx, dy);
+    if (range < cell_) return false;
+    float last = kBehind;
+    if (sensor_[2] > top)
+      last = std::min(last, range * (top - ground) / (sensor_[2] - top) + kUneven);
+    for (float d = cell_; d <= last; d += cell_) {
+      const float share = (range + d) / range;
+      const Slot slot = slot_at({static_cast<double>(sensor_[0] + share * dx),
+                                 static_cast<double>(sensor_[1] + share * dy)});
+      if (slot == kUnobserved) continue;
+      const auto s = static_cast<std::size_t>(slot);
+      const bool floor = cells_.on[s] + cells_.below[s] > 0;
+      const float low = floor ? cells_.floor[s] : cells_.ground[s] + cells_.low[s];
+      // The point lies anywhere in its cell.
+      const float fall = (low - sensor_[2]) / (range + d);
+      if (sensor_[2] + fall * range < top - kMargin - std::abs(fall) * cell_) return true;
+    }
+    return false;
+  }
+
+  const ThingPieces& pieces_;
+  const FieldCells& cells_;
+  const std::array<float, 3>& sensor_;
+  float level_;
+  float cell_;
+};
+
+}  // namespace
+
+void link_continued_things(const ThingPieces& pieces, const std::array<float, 3>& sensor) {
+  const Continuation continuation(pieces, sensor);
+  continuation.link_long_things();
+  continuation.link_low_things();
+}
+
+}  // namespace mrpt_terrain
