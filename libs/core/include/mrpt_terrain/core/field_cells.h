@@ -52,7 +52,8 @@ struct FieldCells {
   /// Of the cells beside that are ground around: how many lie less than half as high as a raised
   /// cell, and how many do not. A smooth swell of the ground has edges of the latter kind only.
   std::vector<std::int8_t> sharp_edges, smooth_edges;
-  /// 1: what is above the reference in a cell is no higher than the ground around (raised_ground.h).
+  /// 1: what is above the reference in a cell is no higher than the ground around
+  /// (raised_ground.h).
   std::vector<std::uint8_t> level;
   std::vector<std::uint8_t> under;  ///< 1: the points above hang, a robot fits underneath
 

@@ -103,8 +103,8 @@ struct RaisedGroundWorkspace {
 /// A point is raised if it lies above the plane by `least_height` and by `sigmas` standard
 /// deviations of the ground about the plane and of the plane itself. Rolling ground deviates from
 /// its plane by more, so that less stands out of it.
-/// Cells whose highest point is above the reference, but not above that plane by `least_height`, are
-/// `level`: there it is the reference that lies too low, as at the rim of a hole.
+/// Cells whose highest point is above the reference, but not above that plane by `least_height`,
+/// are `level`: there it is the reference that lies too low, as at the rim of a hole.
 /// \param[in,out] cells `raised`, `raised_low`, `raised_high`, edges and `level` are filled in
 void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
                         const ElevationGrid& grid, const GroundSegmentation& ground,
