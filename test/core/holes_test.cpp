@@ -169,7 +169,7 @@ TEST(Holes, ARoadBetweenKerbsIsNone) {
   EXPECT_TRUE(holes_in(points).cells().empty());
 }
 
-// `least_depth` and `mean_depth` are 2.5 cm and more.
+// `least_depth` and `mean_depth` are 3 cm and more.
 TEST(Holes, AHoleOfTwoCentimetresIsNone) {
   EXPECT_TRUE(holes_in(worlds::patch_with_hole(kPatch, kPothole, 0.02)).cells().empty());
   EXPECT_FALSE(holes_in(worlds::patch_with_hole(kPatch, kPothole, 0.06)).cells().empty());

@@ -14,17 +14,17 @@ namespace mrpt_terrain {
 
 /// What counts as a hole in the ground: pothole or ditch.
 struct HoleParams {
-  double least_depth = 0.025;  ///< metres below the rim from which a cell may belong to a hole
-  double mean_depth = 0.035;   ///< metres: least depth of a hole
-  int least_points = 6;        ///< fewest points on its floor
-  double rim_depth = 0.15;     ///< greatest spread of the rim about its surface, over the depth
-  double rings_depth = 0.25;   ///< the same where two rings or more show the floor
-  double uneven_depth = 0.2;   ///< greatest spread of the rim without the noise, over the depth
-  double wall_share = 0.45;    ///< most points between rim and floor, over those on the floor
-  double walled = 0.4;         ///< least share of the floor's points in traces that end at walls
-  double closed = 0.95;        ///< least share of the surroundings that are seen and are rim
-  double seen = 0.4;           ///< least share of the surroundings that are seen
-  double widest = 3.0;         ///< metres: greatest extent across
+  double least_depth = 0.03;  ///< metres below the rim from which a cell may belong to a hole
+  double mean_depth = 0.035;  ///< metres: least depth of a hole
+  int least_points = 6;       ///< fewest points on its floor
+  double rim_depth = 0.15;    ///< greatest spread of the rim about its surface, over the depth
+  double rings_depth = 0.25;  ///< the same where two rings or more show the floor
+  double uneven_depth = 0.2;  ///< greatest spread of the rim without the noise, over the depth
+  double wall_share = 0.45;   ///< most points between rim and floor, over those on the floor
+  double walled = 0.4;        ///< least share of the floor's points in traces that end at walls
+  double closed = 0.95;       ///< least share of the surroundings that are seen and are rim
+  double seen = 0.4;          ///< least share of the surroundings that are seen
+  double widest = 3.0;        ///< metres: greatest extent across
 
   template <class Self, class Visitor>
   static void visit_params(Self& self, Visitor&& visit) {
