@@ -33,7 +33,7 @@ draw() {
   gnuplot <<TEXT
 set terminal pngcairo size 900,460
 set output "$2"
-points = 'binary skip=$skip endian=little format="%float%float%float%uchar%uchar%int"'
+points = 'binary skip=$skip endian=little format="%float%float%float%uchar%uchar%int%3uchar"'
 file = "$ply"
 x0 = $4; y0 = $5; range = sqrt(x0 * x0 + y0 * y0)
 along(x, y) = (x * x0 + y * y0) / range - range
