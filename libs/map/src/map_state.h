@@ -85,8 +85,9 @@ struct CTerrainMap::State {
 [[nodiscard]] Eigen::Isometry3d isometry_of(const mrpt::poses::CPose3D& pose);
 [[nodiscard]] mrpt::poses::CPose3D pose_of(const Eigen::Isometry3d& T);
 
-/// Describes a scan, or the cells that it was fused into: all of a snapshot but its revision and
-/// the identities of its clusters. \param time of the scan, seconds
+/// Describes a scan, or the cells that it was fused into: all of a snapshot but its revision, the
+/// identities of its clusters, and costs that follow from the description alone.
+/// \param time of the scan, seconds
 [[nodiscard]] std::shared_ptr<TerrainSnapshot> describe_scan(const io::Scan& scan,
                                                              const Eigen::Isometry3d& T_map_robot,
                                                              double time, const MapParams& params,

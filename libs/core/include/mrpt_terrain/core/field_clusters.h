@@ -89,8 +89,7 @@ struct FieldClusterWorkspace {
   std::vector<std::int32_t> points_of;
   std::vector<std::int32_t> number_of;
   std::vector<std::int32_t> sharp_of, smooth_of, above_of;
-  std::vector<std::uint8_t>
-      stands;  ///< per slot: 1 if a cell of the thing stands out of the ground
+  std::vector<std::uint8_t> stands;  ///< per slot: 1 if a cell of the thing is not level
   std::vector<ThingPiece> pieces;
   std::vector<std::int32_t> posts;  ///< numbers of pieces
 };
