@@ -34,7 +34,10 @@ std::set<CellCode> free_cells(const ScanCells& cells) {
 void add_ray(const CellGrid& grid, const Place& origin, const Place& end, RayBatch& batch) {
   CellKey from{}, to{};
   ASSERT_TRUE(grid.find_key(origin, from) && grid.find_key(end, to));
-  if (from != to) batch.add({grid, origin, from}, end, to, code_of(to));
+  std::uint32_t steps = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    steps += static_cast<std::uint32_t>(std::abs(int{to[axis]} - int{from[axis]}));
+  if (from != to) batch.add({grid, origin, from}, end, steps, code_of(to));
   batch.prepare(grid.resolution);
 }
 

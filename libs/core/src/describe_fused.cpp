@@ -19,10 +19,7 @@ void move_scan(const CurrentScan& current, const WindowFrame& frame,
   move_points(current.scan.points, to_window, workspace.points);
   workspace.origins.clear();
   for (std::size_t k = 0; k < current.origin_count; ++k) {
-    const std::array<float, 3>& origin = current.origins.origins[k];
-    const Eigen::Vector3f p =
-        (to_window * Eigen::Vector3f(origin[0], origin[1], origin[2]).cast<double>()).cast<float>();
-    workspace.origins.push_back({p.x(), p.y(), p.z()});
+    workspace.origins.push_back(move_point(current.origins.origins[k], to_window));
   }
 }
 

@@ -93,7 +93,8 @@ bool choose_points(double band, RimPoints& points) {
   return any_of(changed);
 }
 
-// Sums over the points that count, as far as a plane needs them.
+// Sums over the points that count, as far as a plane needs them. Loads its lanes as the next
+// function does: from a common one, as a struct of lanes, the search for holes took a tenth longer.
 MRPT_TERRAIN_WIDE_REGISTERS
 void sum_for_plane(const RimPoints& points, PowerSums& sums) {
   DoubleLanes moment[6] = {}, heights[3] = {}, count = {};

@@ -82,10 +82,7 @@ void OctreeHalf::insert(const io::Scan& scan, const Eigen::Isometry3d& T_map_rob
   move_points(scan.points.view(), T_map_robot, ends_);
   origins_.clear();
   for (const auto& origin : scan.ray_origins) {
-    const Eigen::Vector3f p =
-        (T_map_robot * Eigen::Vector3f(origin[0], origin[1], origin[2]).cast<double>())
-            .cast<float>();
-    origins_.push_back({p.x(), p.y(), p.z()});
+    origins_.push_back(move_point(origin, T_map_robot));
   }
   if (origins_.empty()) return;
   const octree::RayOrigins origins{origins_.data(), origins_.size(),

@@ -63,8 +63,9 @@ void measure_lengths(const Place& from, double max_range, EndBatch& ends) {
     const float dz = z - from[2];
     ends.length[k] = std::sqrt(double{dx * dx + dy * dy + dz * dz});
     const bool is_short = (max_range < 0.0) | (ends.length[k] <= max_range);
+    // That it lies in the cells is taken back where it does not.
     ends.flags[k] = (finite ? std::uint32_t{kFiniteEnd} | kEndInRange : 0U) |
-                    (is_short ? std::uint32_t{kShort} : 0U);
+                    (is_short ? std::uint32_t{kShort} : 0U) | kInRange;
   }
 }
 
@@ -125,7 +126,6 @@ void find_codes(const CellKey& from, EndBatch& ends) {
 void EndBatch::measure(const RayOrigin& from, const CellGrid& grid, double max_range) {
   measure_lengths(from.place, max_range, *this);
   for (std::size_t axis = 0; axis < 3; ++axis) cut_along(axis, from.place, grid, max_range, *this);
-  for (std::size_t k = 0; k < size; ++k) flags[k] |= kInRange;
   for (std::size_t axis = 0; axis < 3; ++axis) find_keys(axis, grid, *this);
   find_codes(from.key, *this);
 }
@@ -143,15 +143,6 @@ bool CellGrid::find_key(const Place& place, CellKey& key) const {
 RayOrigin::RayOrigin(const CellGrid& grid, const Place& at, const CellKey& its_key)
     : place(at), key(its_key), code(code_of(its_key)) {
   for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = grid.centre(key[axis]);
-}
-
-void RayBatch::add(const RayOrigin& from, const Place& to, const CellKey& to_key,
-                   CellCode to_code) {
-  std::uint32_t steps = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    steps += static_cast<std::uint32_t>(std::abs(int{to_key[axis]} - int{from.key[axis]}));
-  }
-  add(from, to, steps, to_code);
 }
 
 void RayBatch::prepare(double resolution) {

@@ -98,8 +98,7 @@ struct RayBatch {
   alignas(64) std::array<Row<CellCode>, 3> step;
 
   /// Adds a ray between different cells.
-  void add(const RayOrigin& from, const Place& to, const CellKey& to_key, CellCode to_code);
-  /// The same where the number of steps is known.
+  /// \param steps from the first cell to the last
   void add(const RayOrigin& from, const Place& to, std::uint32_t steps, CellCode to_code) {
     const std::size_t k = size++;
     first[k] = from.code;

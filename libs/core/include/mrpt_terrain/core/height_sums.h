@@ -10,18 +10,7 @@ namespace mrpt_terrain {
 struct HeightSums {
   float n = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
 
-  void add(float px, float py, float pz) {
-    n += 1.0F;
-    x += px;
-    y += py;
-    z += pz;
-    xx += px * px;
-    xy += px * py;
-    yy += py * py;
-    xz += px * pz;
-    yz += py * pz;
-    zz += pz * pz;
-  }
+  void add(float px, float py, float pz) { add_weighted(px, py, pz, 1.0F); }
 
   /// Adds a point that counts `weight` times.
   void add_weighted(float px, float py, float pz, float weight) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 
 #include "mrpt_terrain/core/points.h"
 
@@ -12,5 +13,13 @@ namespace mrpt_terrain {
 /// \param T pose of the points' frame in the other one
 /// \param[out] moved as many points, metres; not those that `points` borrows
 void move_points(const PointsView& points, const Eigen::Isometry3d& T, Points& moved);
+
+/// The same of a single one, such as the origin of beams.
+[[nodiscard]] inline std::array<float, 3> move_point(const std::array<float, 3>& point,
+                                                     const Eigen::Isometry3d& T) {
+  const Eigen::Vector3f p =
+      (T * Eigen::Vector3f(point[0], point[1], point[2]).cast<double>()).cast<float>();
+  return {p.x(), p.y(), p.z()};
+}
 
 }  // namespace mrpt_terrain
