@@ -19,12 +19,6 @@ constexpr float kTopShare = 0.3F;
 constexpr float kLow = 0.3F, kLowWidth = 0.8F;
 constexpr float kRingGap = 2.0F;
 constexpr float kFewestCells = 2.0F;
-// Beams are followed so far behind a gap; over level ground no farther than where they would have
-// to come down, and this much more, metres.
-constexpr float kBehind = 12.0F;
-constexpr float kUneven = 2.0F;
-// How far below the top of a thing a beam has to be to have passed where it would stand, metres.
-constexpr float kMargin = 0.03F;
 
 /// A line along which two things may be one; places on it are metres from the middle of the first.
 struct Line {
@@ -69,10 +63,9 @@ struct Extent {
 
 class Continuation {
  public:
-  Continuation(const ThingPieces& pieces, const std::array<float, 3>& sensor)
+  Continuation(const ThingPieces& pieces, const PassedBeams& beams)
       : pieces_(pieces),
-        cells_(pieces.cells),
-        sensor_(sensor),
+        beams_(beams),
         level_(static_cast<float>(pieces.params.level)),
         cell_(static_cast<float>(pieces.grid.geometry.cell_size())) {}
 
@@ -181,46 +174,21 @@ class Continuation {
     for (float s = gap.begin + cell_; s < gap.end; s += cell_) {
       const float share = (s - gap.begin) / gap.length();
       const float ground = piece.ground + share * (other.ground - piece.ground);
-      if (is_passed(line.place(s, 0.0F), ground, ground + top)) return false;
+      if (beams_.have_passed(line.place(s, 0.0F), ground, ground + top)) return false;
     }
     return true;
   }
 
-  // Whether a beam that ends behind a place has passed it below a height.
-  [[nodiscard]] bool is_passed(const Position2& at, float ground, float top) const {
-    const float dx = static_cast<float>(at.x) - sensor_[0];
-    const float dy = static_cast<float>(at.y) - sensor_[1];
-    const float range = std::hypot(dx, dy);
-    if (range < cell_) return false;
-    float last = kBehind;
-    if (sensor_[2] > top)
-      last = std::min(last, range * (top - ground) / (sensor_[2] - top) + kUneven);
-    for (float d = cell_; d <= last; d += cell_) {
-      const float share = (range + d) / range;
-      const Slot slot = slot_at({static_cast<double>(sensor_[0] + share * dx),
-                                 static_cast<double>(sensor_[1] + share * dy)});
-      if (slot == kUnobserved) continue;
-      const auto s = static_cast<std::size_t>(slot);
-      const bool floor = cells_.on[s] + cells_.below[s] > 0;
-      const float low = floor ? cells_.floor[s] : cells_.ground[s] + cells_.low[s];
-      // The point lies anywhere in its cell.
-      const float fall = (low - sensor_[2]) / (range + d);
-      if (sensor_[2] + fall * range < top - kMargin - std::abs(fall) * cell_) return true;
-    }
-    return false;
-  }
-
   const ThingPieces& pieces_;
-  const FieldCells& cells_;
-  const std::array<float, 3>& sensor_;
+  const PassedBeams& beams_;
   float level_;
   float cell_;
 };
 
 }  // namespace
 
-void link_continued_things(const ThingPieces& pieces, const std::array<float, 3>& sensor) {
-  const Continuation continuation(pieces, sensor);
+void link_continued_things(const ThingPieces& pieces, const PassedBeams& beams) {
+  const Continuation continuation(pieces, beams);
   continuation.link_long_things();
   continuation.link_low_things();
 }

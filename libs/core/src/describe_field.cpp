@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "describe_stages.h"
+#include "thing_parts.h"
 #include "things.h"
 
 namespace mrpt_terrain {
@@ -93,6 +94,8 @@ void describe_field(const ScanView& scan, const DescriptionParams& params,
   find_raised_ground(scan.points, workspace.field, description.grid, description.ground,
                      workspace.point_slots, params.raised_ground, workspace.raised_ground,
                      description.field);
+  mark_thing_parts(scan, workspace.field.points, workspace.raised_ground.height,
+                   workspace.point_slots, description.grid, description.field);
   find_overhangs(description.grid, params.overhangs, description.field);
   done(Stage::kGrid);
   find_field_clusters(description.grid, description.ground, description.field,

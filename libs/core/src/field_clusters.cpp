@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "carried_things.h"
 #include "continued_things.h"
@@ -22,6 +23,7 @@ struct Linker {
   float step;
   float flat;
   float level;
+  const PassedBeams* beams;  ///< null: unknown
 
   [[nodiscard]] bool is_member(std::size_t slot) const {
     return !ground.is_ground(slot) || cells.raised[slot] > 0;
@@ -46,6 +48,10 @@ struct Linker {
     // Upright surfaces have no gaps; what lies flat is seen by a ring here and one there.
     return touching || (high_a - low_a <= flat && high_b - low_b <= flat);
   }
+  // Whether two near cells are of two things all the same.
+  [[nodiscard]] bool divided(std::size_t a, std::size_t b) const {
+    return beams != nullptr && beams->divide(a, b);
+  }
 };
 
 int reach_of(const ElevationGrid& grid, const FieldClusterParams& params, CellIndex index) {
@@ -62,10 +68,13 @@ void link_back(const Linker& linker, std::size_t slot, const FieldClusterParams&
   const ElevationGrid& grid = linker.grid;
   const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
   members.for_marked_around(at, reach_of(grid, params, at), [&](CellIndex near) {
+    const auto own = static_cast<std::int32_t>(slot);
     const Slot other = grid.slot_at(near);
+    const auto beside = static_cast<std::size_t>(other);
     const bool touching = at.l - near.l <= 1 && std::abs(at.w - near.w) <= 1;
-    if (linker.compatible(slot, static_cast<std::size_t>(other), touching))
-      unite(parent, static_cast<std::int32_t>(slot), other);
+    if (!linker.compatible(slot, beside, touching)) return;
+    if (root_of(parent, own) == root_of(parent, other) || linker.divided(slot, beside)) return;
+    unite(parent, own, other);
   });
   members.mark(at);
 }
@@ -173,12 +182,15 @@ void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& gr
                          const FieldCells& cells, const FieldClusterParams& params,
                          FieldClusterWorkspace& workspace, Clusters& result,
                          const std::array<float, 3>* sensor) {
+  const std::optional<PassedBeams> beams =
+      sensor == nullptr ? std::nullopt : std::optional<PassedBeams>({grid, cells, *sensor});
   const Linker linker{grid,
                       ground,
                       cells,
                       static_cast<float>(params.step),
                       static_cast<float>(params.flat),
-                      static_cast<float>(params.level)};
+                      static_cast<float>(params.level),
+                      beams ? &*beams : nullptr};
   const std::size_t n = grid.observed();
   workspace.parent.resize(n);
   workspace.members.clear(grid.geometry);
@@ -194,7 +206,7 @@ void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& gr
   const ThingPieces pieces{grid, ground, cells, params, workspace};
   pieces.measure();
   link_carried_things(pieces);
-  if (sensor != nullptr) link_continued_things(pieces, *sensor);
+  if (beams) link_continued_things(pieces, *beams);
   count_members(linker, workspace);
   number_things(params, workspace, result);
   result.cluster_of.assign(n, kNoCluster);

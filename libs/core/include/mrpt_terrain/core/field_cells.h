@@ -56,6 +56,11 @@ struct FieldCells {
   /// (raised_ground.h).
   std::vector<std::uint8_t> level;
   std::vector<std::uint8_t> under;  ///< 1: the points above hang, a robot fits underneath
+  /// Cells have kParts x kParts parts: bit kParts i + k stands for the i-th along x and the k-th
+  /// along y.
+  static constexpr int kParts = 4;
+  /// Parts with points above the ground or of raised ground; empty: unknown.
+  std::vector<std::uint16_t> parts;
 
   [[nodiscard]] std::size_t size() const { return ground.size(); }
 };
