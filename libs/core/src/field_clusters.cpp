@@ -67,15 +67,19 @@ void link_back(const Linker& linker, std::size_t slot, const FieldClusterParams&
                CellBits& members, std::vector<std::int32_t>& parent) {
   const ElevationGrid& grid = linker.grid;
   const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
-  members.for_marked_around(at, reach_of(grid, params, at), [&](CellIndex near) {
-    const auto own = static_cast<std::int32_t>(slot);
+  auto root = static_cast<std::int32_t>(slot);
+  const auto link = [&](CellIndex near) {
     const Slot other = grid.slot_at(near);
+    if (root_of(parent, other) == root) return;
     const auto beside = static_cast<std::size_t>(other);
     const bool touching = at.l - near.l <= 1 && std::abs(at.w - near.w) <= 1;
-    if (!linker.compatible(slot, beside, touching)) return;
-    if (root_of(parent, own) == root_of(parent, other) || linker.divided(slot, beside)) return;
-    unite(parent, own, other);
-  });
+    if (!linker.compatible(slot, beside, touching) || linker.divided(slot, beside)) return;
+    unite(parent, root, other);
+    root = root_of(parent, root);
+  };
+  // Most of what is farther away is of one thing with what touches: then nothing more is asked.
+  members.for_marked_around(at, 1, link);
+  members.for_marked_around(at, reach_of(grid, params, at), link);
   members.mark(at);
 }
 

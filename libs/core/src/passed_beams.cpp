@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
 #include "thing_pieces.h"
 
@@ -18,28 +19,45 @@ constexpr float kUneven = 2.0F;
 constexpr float kMargin = 0.03F;
 // Things with a gap of less than this across the beams may be one: noise, metres, and two columns
 // of a sensor with 0.35 deg between them, radians.
-constexpr float kNoise = 0.05F;
-constexpr float kColumns = 0.012F;
+constexpr double kNoise = 0.05;
+constexpr double kColumns = 0.012;
 
-/// Centre of a part of a cell, in parts from the first corner of the cell that it is counted from.
-struct Part {
-  int l = 0, w = 0;
-};
+constexpr int kParts = FieldCells::kParts;
 
-/// The parts of two cells that are nearest to each other; of equal distances, the first.
+// The parts of a cell on a board of two by two cells, a byte per row of parts.
+std::uint64_t on_board(std::uint16_t parts, bool lower, bool right) {
+  std::uint64_t board = 0;
+  for (int l = 0; l < kParts; ++l) {
+    const std::uint64_t row = parts >> (kParts * l) & 0xFU;
+    board |= row << (8 * (lower ? kParts + l : l) + (right ? kParts : 0));
+  }
+  return board;
+}
+
+// Whether parts of two cells that touch do so as well, if only at corners.
+bool parts_touch(std::uint16_t of_a, std::uint16_t of_b, CellIndex offset) {
+  static_assert(kParts == 4, "a board has 64 parts");
+  const std::uint64_t a = on_board(of_a, offset.l < 0, offset.w < 0);
+  const std::uint64_t b = on_board(of_b, offset.l > 0, offset.w > 0);
+  constexpr std::uint64_t kFirstColumn = 0x0101010101010101U;
+  std::uint64_t around = a | (a << 1 & ~kFirstColumn) | (a >> 1 & ~(kFirstColumn << 7));
+  around |= around << 8 | around >> 8;
+  return (around & b) != 0;
+}
+
+/// The parts of two cells that are nearest to each other; of equal distances, the first. Counted
+/// from the first part of the first cell.
 struct NearestParts {
-  Part a, b;
+  CellIndex a, b;
 
-  // \param offset_l, offset_w from the first cell to the second, cells
-  NearestParts(std::uint16_t of_a, std::uint16_t of_b, int offset_l, int offset_w) {
-    constexpr int kParts = FieldCells::kParts;
+  NearestParts(std::uint16_t of_a, std::uint16_t of_b, CellIndex offset) {
     int least = 1 << 30;
     for (int i = 0; i < kParts * kParts; ++i) {
       if ((of_a >> i & 1) == 0) continue;
       for (int k = 0; k < kParts * kParts; ++k) {
         if ((of_b >> k & 1) == 0) continue;
-        const Part from{i / kParts, i % kParts};
-        const Part to{kParts * offset_l + k / kParts, kParts * offset_w + k % kParts};
+        const CellIndex from{i / kParts, i % kParts};
+        const CellIndex to{kParts * offset.l + k / kParts, kParts * offset.w + k % kParts};
         const int dl = to.l - from.l, dw = to.w - from.w;
         if (dl * dl + dw * dw >= least) continue;
         least = dl * dl + dw * dw;
@@ -93,20 +111,25 @@ bool PassedBeams::divide(std::size_t slot_a, std::size_t slot_b) const {
   if (of_a == 0 || of_b == 0) return false;
   const CellIndex a = grid_.geometry.index_of(grid_.cell[slot_a]);
   const CellIndex b = grid_.geometry.index_of(grid_.cell[slot_b]);
-  const NearestParts nearest(of_a, of_b, b.l - a.l, b.w - a.w);
-  const double part = grid_.geometry.cell_size() / FieldCells::kParts;
-  const double dx = part * (nearest.b.l - nearest.a.l), dy = part * (nearest.b.w - nearest.a.w);
+  const CellIndex offset{b.l - a.l, b.w - a.w};
   const Position2 centre = grid_.geometry.centre_of(a);
-  const double corner = 0.5 * (part - grid_.geometry.cell_size());
-  const Position2 middle{centre.x + corner + part * nearest.a.l + 0.5 * dx,
-                         centre.y + corner + part * nearest.a.w + 0.5 * dy};
-  const double to_x = middle.x - static_cast<double>(sensor_[0]);
-  const double to_y = middle.y - static_cast<double>(sensor_[1]);
-  const double range = std::hypot(to_x, to_y);
+  const double beam_x = centre.x - static_cast<double>(sensor_[0]);
+  const double beam_y = centre.y - static_cast<double>(sensor_[1]);
+  const double range = std::hypot(beam_x, beam_y);
+  const auto across = [&](double x, double y) { return std::abs(x * beam_y - y * beam_x) / range; };
+  const double cell = grid_.geometry.cell_size(), part = cell / kParts;
   // Points lie anywhere in their parts.
-  const double across = std::abs(dx * to_y - dy * to_x) / range - part;
-  if (!(across >= static_cast<double>(kNoise) + static_cast<double>(kColumns) * range))
-    return false;
+  const double least = kNoise + kColumns * range + part;
+  // Most of what is asked for: parts lie up to 0.375 of a cell off its centre along each axis.
+  if (!(across(cell * offset.l, cell * offset.w) + 1.07 * cell >= least)) return false;
+  const bool touching = std::abs(offset.l) <= 1 && std::abs(offset.w) <= 1;
+  if (touching && parts_touch(of_a, of_b, offset)) return false;
+  const NearestParts nearest(of_a, of_b, offset);
+  const double dx = part * (nearest.b.l - nearest.a.l), dy = part * (nearest.b.w - nearest.a.w);
+  if (!(across(dx, dy) >= least)) return false;
+  const double first = 0.5 * (part - cell);
+  const Position2 middle{centre.x + first + part * nearest.a.l + 0.5 * dx,
+                         centre.y + first + part * nearest.a.w + 0.5 * dy};
   const float ground = cells_.ground[slot_a];
   const float top = std::min(high_of(cells_, slot_a), high_of(cells_, slot_b));
   return have_passed(middle, ground, ground + top);

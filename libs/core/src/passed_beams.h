@@ -21,10 +21,9 @@ class PassedBeams {
   /// \param ground, top heights in the frame of the grid, metres
   [[nodiscard]] bool have_passed(const Position2& at, float ground, float top) const;
 
-  /// Whether a beam has passed between what stands in two cells: from where the beams begin, the
-  /// parts with points of things that are nearest to each other are farther apart than columns of
-  /// beams, and a beam has passed in the middle. False where nothing is known of parts
-  /// (FieldCells::parts).
+  /// Whether a beam has passed between what stands in two cells: from where the beams begin, their
+  /// nearest parts with points of things are apart by more than columns of beams are, and a beam
+  /// has passed in the middle. False where nothing is known of parts (FieldCells::parts).
   [[nodiscard]] bool divide(std::size_t slot_a, std::size_t slot_b) const;
 
  private:
