@@ -69,9 +69,10 @@ TEST(DividedThings, ABeamThatPassesBetweenTwoPostsDividesThem) {
   EXPECT_TRUE(are_one(things_of(scan, false))) << "nobody knows where beams begin";
 }
 
-// Columns that pass, 0.16 deg apart, could as well be between those that meet one thing.
-TEST(DividedThings, TwoPostsFarAwayAreOne) {
-  EXPECT_TRUE(are_one(things_of(TwoPosts(14.0, -0.3, 0.0, 0.4).seen())));
+// A gap of 0.1 m is as wide as several columns 3 m away, and as two of a coarse sensor at 8 m.
+TEST(DividedThings, NarrowGapsFarAwayAreNone) {
+  EXPECT_TRUE(are_two(things_of(TwoPosts(3.0, -0.3, 0.0, 0.3).seen())));
+  EXPECT_TRUE(are_one(things_of(TwoPosts(8.0, -0.3, 0.0, 0.3).seen())));
 }
 
 // The same posts as above, but with nothing seen behind them: no beam is known to have passed.
