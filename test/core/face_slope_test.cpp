@@ -53,6 +53,12 @@ struct FaceScan {
   }
 };
 
+BeamSlopeParams without_ring_errors() {
+  BeamSlopeParams params;
+  params.ring_sigma = 0.0;
+  return params;
+}
+
 Slope slope_of(const Points& points, const BeamSlopeParams& params = {}) {
   std::vector<std::int32_t> all(points.size());
   std::iota(all.begin(), all.end(), 0);
@@ -251,6 +257,81 @@ TEST(FaceSlope, TheFaceBesideDoesNotTurnIt) {
     ASSERT_EQ(slope.status, FeatureStatus::kOk) << trial;
     EXPECT_NEAR(slope.angle, 12.0 * kDegree, 0.6 * kDegree) << trial;
   }
+}
+
+/// A ramp about (5, 0) that rises to the left by 15 deg, with an upright front at x = 4.2 m that
+/// the same beams meet below its edge.
+Points ramp_with_front(RandomGenerator& random, double noise) {
+  const double gradient = std::tan(15.0 * kDegree);
+  Points points;
+  for (int ring = 0; ring < 40; ++ring) {
+    const double e = (-30.0 + ring) * kDegree;
+    for (int column = -60; column <= 60; ++column) {
+      const double a = 0.3 * kDegree * column;
+      const Eigen::Vector3d d(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+      const double front = 4.2 / d.x();
+      double range = (0.3 - 1.2) / (d.z() - gradient * d.y());
+      if (1.2 + front * d.z() < 0.3 + gradient * front * d.y()) range = front;
+      const Eigen::Vector3d at = Eigen::Vector3d(0.0, 0.0, 1.2) + range * d;
+      if (!(range > 0.0) || at.x() > 5.8 || std::abs(at.y()) > 0.8 || at.z() < 0.05) continue;
+      const Eigen::Vector3f measured = (at + noise * normal_deviate(random) * d).cast<float>();
+      points.push_back(measured.x(), measured.y(), measured.z());
+    }
+  }
+  return points;
+}
+
+// Points of the front just below the edge are within the noise of the face, and all on one side.
+TEST(FaceSlope, WhatJoinsOnAtItsEdgeDoesNotTurnIt) {
+  constexpr int kTrials = 200;
+  double mean = 0.0;
+  int in_two_sigma = 0;
+  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
+    RandomGenerator random(97, trial);
+    const Slope slope = slope_of(ramp_with_front(random, 0.02), without_ring_errors());
+    ASSERT_EQ(slope.status, FeatureStatus::kOk) << trial;
+    const double error = (slope.direction - 90.0 * kDegree) / slope.direction_sigma;
+    mean += error / kTrials;
+    in_two_sigma += std::abs(error) <= 2.0 ? 1 : 0;
+  }
+  EXPECT_LT(std::abs(mean), 0.5);
+  EXPECT_GT(in_two_sigma, 0.9 * kTrials);
+}
+
+// Rings that run up the face tell its angle by themselves, though their errors tilt it as a whole.
+TEST(FaceSlope, RingsTellMoreByTheirCourseThanByTheirHeight) {
+  constexpr int kTrials = 100;
+  BeamSlopeParams params;
+  params.ring_sigma = 0.013;
+  double with = 0.0, without = 0.0;
+  int in_two_sigma = 0;
+  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
+    RandomGenerator random(98, trial);
+    FaceScan scan{20.0 * kDegree, 60.0 * kDegree, 0.8, 0.008, 0.013};
+    const Points points = scan.seen(random);
+    const Slope plain = slope_of(points, without_ring_errors());
+    const Slope slope = slope_of(points, params);
+    ASSERT_EQ(slope.status, FeatureStatus::kOk) << trial;
+    const double error = slope.angle - 20.0 * kDegree;
+    with += error * error / kTrials;
+    without += (plain.angle - 20.0 * kDegree) * (plain.angle - 20.0 * kDegree) / kTrials;
+    in_two_sigma += std::abs(error) <= 2.0 * slope.angle_sigma ? 1 : 0;
+  }
+  EXPECT_LT(with, 0.8 * without);
+  EXPECT_GE(in_two_sigma, 90);
+}
+
+TEST(FaceSlope, NearlyLevelFacesRiseInNoDirection) {
+  int undecided = 0;
+  for (std::uint64_t trial = 0; trial < 50; ++trial) {
+    RandomGenerator random(99, trial);
+    const Slope slope = slope_of(FaceScan{0.05 * kDegree, 0.0}.seen(random));
+    ASSERT_EQ(slope.status, FeatureStatus::kOk) << trial;
+    const double error = std::abs(std::remainder(slope.direction, 2.0 * M_PI));
+    EXPECT_TRUE(error <= 4.0 * slope.direction_sigma) << trial;
+    undecided += slope.direction_sigma > 3.0 ? 1 : 0;
+  }
+  EXPECT_GT(undecided, 40);
 }
 
 }  // namespace

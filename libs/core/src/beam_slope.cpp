@@ -183,8 +183,7 @@ std::optional<BeamPlane> consensus_plane(const BeamPoints& sample, const BeamSlo
     const float cost = truncated_cost(sample, n, *plane, cutoff, best_cost);
     if (!(cost < best_cost)) continue;
     best_cost = cost;
-    best = BeamPlane{Eigen::Vector3f(plane->a, plane->b, plane->c).cast<double>().normalized(),
-                     static_cast<double>(plane->d)};
+    best = beam_plane_of(*plane);
   }
   return best;
 }

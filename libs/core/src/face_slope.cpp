@@ -4,28 +4,29 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
-#include "plane_inliers.h"
+#include "face_consensus.h"
+#include "face_edges.h"
+#include "face_errors.h"
 #include "ring_errors.h"
 
 namespace mrpt_terrain {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr std::size_t kConsensusSize = 256;
 constexpr std::size_t kLeastPoints = 8;
 // Rounds in which the points of a face are chosen, and steps of the fit in each.
 constexpr int kRounds = 3, kSteps = 2;
+// Steps of the fit without what is beyond the edges of the face.
+constexpr int kLastSteps = 5;
+// Faces inclined by fewer standard deviations of their angle rise in no direction.
+constexpr double kInclined = 3.0;
 // Least sine of the angle between the face and the beams.
 constexpr double kLeastGrazing = 0.02;
 // Least width of a face: a standard deviation in metres, and in those of the range noise.
 constexpr double kLeastWidth = 0.05;
 constexpr double kWidthSigmas = 3.0;
-// Points may be so far from the first plane, along their beams, metres: three standard deviations
-// of range noise and errors of rings.
-constexpr float kAlongBeam = 0.06F;
 // Least share of a thing's points on its face.
 constexpr double kLeastShare = 0.2;
 // A face is at least this share of what is seen between its ends.
@@ -73,42 +74,6 @@ void draw_sample(const PointsView& points, IndexRange members, const Eigen::Vect
     workspace.y.push_back(points.y[i] - centre.y());
     workspace.z.push_back(points.z[i] - centre.z());
   }
-}
-
-// Distance from a plane up to which points may be on it: noise lies along the beams.
-float seed_distance(const Eigen::Vector3f& normal, const Eigen::Vector3f& beam,
-                    const BeamSlopeParams& params) {
-  const float across = std::abs(normal.dot(beam)) + static_cast<float>(kAcrossBeam);
-  return std::min(static_cast<float>(params.seed_distance), kAlongBeam * across);
-}
-
-// The best of random planes that are not too steep, by truncated squared distances (MSAC).
-// \param beam mean direction of the beams
-std::optional<BeamPlane> consensus_plane(const FaceSlopeWorkspace& workspace,
-                                         const Eigen::Vector3f& beam, const BeamSlopeParams& params,
-                                         RandomGenerator& random) {
-  const PointsView cloud{workspace.x.data(), workspace.y.data(), workspace.z.data(),
-                         workspace.x.size()};
-  const auto least_upright = static_cast<float>(std::cos(kSteepestFace));
-  float best_cost = std::numeric_limits<float>::max();
-  std::optional<BeamPlane> best;
-  for (int k = 0; k < params.hypotheses; ++k) {
-    const std::optional<Plane> plane = random_plane(cloud, random);
-    if (!plane || std::abs(plane->c) < least_upright) continue;
-    const float limit = seed_distance({plane->a, plane->b, plane->c}, beam, params);
-    const float per_square = 1.0F / (limit * limit);
-    float cost = 0.0F;
-    for (std::size_t i = 0; i < cloud.size && cost < best_cost; ++i) {
-      const float e =
-          plane->a * cloud.x[i] + plane->b * cloud.y[i] + plane->c * cloud.z[i] + plane->d;
-      cost += std::min(e * e * per_square, 1.0F);
-    }
-    if (!(cost < best_cost)) continue;
-    best_cost = cost;
-    best = BeamPlane{Eigen::Vector3f(plane->a, plane->b, plane->c).cast<double>().normalized(),
-                     static_cast<double>(plane->d)};
-  }
-  return best;
 }
 
 // Whether the sample has enough points near the plane.
@@ -175,7 +140,8 @@ std::int32_t column_of(float dx, float dy) {
 }
 float elevation_of(float dz) { return std::asin(std::clamp(dz, -1.0F, 1.0F)); }
 
-// The points within a few standard deviations of the plane, by column and elevation.
+// The points within a few standard deviations of the plane, by column and elevation, without those
+// that are known to be beyond its edges.
 Moments find_face(const BeamPlaneFit& fit, FaceSlopeWorkspace& workspace) {
   const Eigen::Vector3f n = fit.plane.normal.cast<float>();
   const auto d = static_cast<float>(fit.plane.offset);
@@ -187,7 +153,7 @@ Moments find_face(const BeamPlaneFit& fit, FaceSlopeWorkspace& workspace) {
     const float along = n.x() * points.dx[i] + n.y() * points.dy[i] + n.z() * points.dz[i];
     const float sigma =
         static_cast<float>(fit.range_sigma) * std::hypot(along, static_cast<float>(kAcrossBeam));
-    if (std::abs(e) > kOnFace * sigma) continue;
+    if (workspace.beyond[i] != 0 || std::abs(e) > kOnFace * sigma) continue;
     sums.add(points.x[i], points.y[i], points.z[i]);
     FaceBeam beam;
     beam.column = column_of(points.dx[i], points.dy[i]);
@@ -261,110 +227,6 @@ double rings_per_column(const std::vector<FaceBeam>& beams) {
   return columns == 0 ? 0.0 : static_cast<double>(rings) / static_cast<double>(columns);
 }
 
-/// The normal equations of a face: rows (1, u . p, v . p) about its mean, with the weights of noise
-/// along the beams.
-struct FaceRows {
-  Eigen::Vector3d normal, u, v, mean;
-
-  [[nodiscard]] Eigen::Vector3d row(const Eigen::Vector3d& at) const {
-    return {1.0, u.dot(at - mean), v.dot(at - mean)};
-  }
-  [[nodiscard]] double along(const BeamPoints& points, std::size_t i) const {
-    return normal.dot(Eigen::Vector3f(points.dx[i], points.dy[i], points.dz[i]).cast<double>());
-  }
-  [[nodiscard]] static double weight(double along) {
-    return 1.0 / (along * along + kAcrossBeam * kAcrossBeam);
-  }
-};
-
-Eigen::Vector3d place_of(const BeamPoints& points, std::size_t i) {
-  return Eigen::Vector3f(points.x[i], points.y[i], points.z[i]).cast<double>();
-}
-
-// What an error of every ring does to the plane: it pulls at all points of the ring at once.
-// \return the normal equations
-Eigen::Matrix3d add_pulls(const FaceRows& rows, FaceSlopeWorkspace& workspace) {
-  const BeamPoints& points = workspace.points;
-  Eigen::Matrix3d normal_equations = Eigen::Matrix3d::Zero();
-  for (FaceRing& ring : workspace.rings) ring.pull.setZero();
-  for (const FaceBeam& beam : workspace.beams) {
-    if (beam.ground) continue;
-    const auto i = static_cast<std::size_t>(beam.point);
-    const double along = rows.along(points, i);
-    const Eigen::Vector3d row = rows.row(place_of(points, i));
-    const double weight = FaceRows::weight(along);
-    normal_equations += weight * row * row.transpose();
-    workspace.rings[static_cast<std::size_t>(beam.ring)].pull += weight * along * row;
-  }
-  return normal_equations;
-}
-
-// What is left of the errors of points when those of their rings are taken off pulls at the plane
-// too. Neighbours on a ring may be wrong together, at edges above all, so that it is added up over
-// parts of rings: the covariance of estimates with dependent errors in groups (Liang and Zeger
-// 1986). Where nothing is known of a ring, its mean error is that which `add_pulls` has.
-// \param change of the plane, in terms of the rows
-Eigen::Matrix3d scatter_of_parts(const FaceRows& rows, double offset, const Eigen::Vector3d& change,
-                                 double ring_sigma, FaceSlopeWorkspace& workspace) {
-  const BeamPoints& points = workspace.points;
-  const auto visit = [&](auto&& visitor) {
-    for (const FaceBeam& beam : workspace.beams) {
-      if (beam.ground) continue;
-      const auto i = static_cast<std::size_t>(beam.point);
-      const Eigen::Vector3d at = place_of(points, i);
-      const Eigen::Vector3d row = rows.row(at);
-      const double along = rows.along(points, i);
-      FaceRing& ring = workspace.rings[static_cast<std::size_t>(beam.ring)];
-      const double e = rows.normal.dot(at) + offset + row.dot(change) - along * ring.error;
-      visitor(beam, ring, e, along, row);
-    }
-  };
-  for (FaceRing& ring : workspace.rings) ring.sum = ring.information = 0.0;
-  visit([](const FaceBeam&, FaceRing& ring, double e, double along, const Eigen::Vector3d&) {
-    ring.sum += FaceRows::weight(along) * along * e;
-    ring.information += FaceRows::weight(along) * along * along;
-  });
-  for (FaceRing& ring : workspace.rings) {
-    const double unknown = ring_sigma > 0.0 ? ring.variance / (ring_sigma * ring_sigma) : 0.0;
-    ring.sum = ring.information > 0.0 ? unknown * unknown * ring.sum / ring.information : 0.0;
-  }
-  PartsOfRings parts(workspace);
-  visit([&](const FaceBeam& beam, const FaceRing& ring, double e, double along,
-            const Eigen::Vector3d& row) {
-    parts.of(beam).row += FaceRows::weight(along) * (e - along * ring.sum) * row;
-  });
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const RingPart& part : workspace.parts) scatter += part.row * part.row.transpose();
-  const auto n = static_cast<double>(workspace.parts.size());
-  return scatter * (n / std::max(n - 3.0, 1.0));
-}
-
-// Takes what is known of the errors of the rings off, and states how uncertain the plane is.
-// \param shared covariance of the ground's plane, which the errors share
-void take_off_errors_of_rings(const Moments& face, const Eigen::Matrix3d& shared, double ring_sigma,
-                              FaceSlopeWorkspace& workspace, BeamPlaneFit& fit) {
-  const Eigen::Vector3d u = fit.plane.normal.unitOrthogonal();
-  const FaceRows rows{fit.plane.normal, u, fit.plane.normal.cross(u), face.mean()};
-  const Eigen::Matrix3d inverse = add_pulls(rows, workspace).inverse();
-  Eigen::Matrix3d pulls = Eigen::Matrix3d::Zero(), of_ground = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d pull = Eigen::Vector3d::Zero();
-  for (const FaceRing& ring : workspace.rings) {
-    pulls += ring.variance * ring.pull * ring.pull.transpose();
-    of_ground += ring.pull * ring.shared.transpose();
-    pull += ring.error * ring.pull;
-  }
-  pulls += of_ground * shared * of_ground.transpose();
-  const Eigen::Vector3d change = inverse * pull;
-  pulls += scatter_of_parts(rows, fit.plane.offset, change, ring_sigma, workspace);
-  Eigen::Matrix<double, 3, 2> axes;
-  axes << rows.u, rows.v;
-  fit.normal_covariance =
-      axes * (inverse * pulls * inverse).bottomRightCorner<2, 2>() * axes.transpose();
-  const Eigen::Vector3d normal = rows.normal + axes * change.tail<2>();
-  const double offset = fit.plane.offset + change.x() - (axes * change.tail<2>()).dot(face.mean());
-  fit.plane = {normal / normal.norm(), offset / normal.norm()};
-}
-
 void report(const BeamPlaneFit& fit, const Eigen::Vector3d& centre, Slope& slope) {
   const Eigen::Vector3d n =
       fit.plane.normal.z() < 0.0 ? Eigen::Vector3d(-fit.plane.normal) : fit.plane.normal;
@@ -381,7 +243,7 @@ void report(const BeamPlaneFit& fit, const Eigen::Vector3d& centre, Slope& slope
   const double variance = std::max(0.0, up.dot(fit.normal_covariance * up));
   slope.angle_sigma = std::sqrt(variance);
   slope.direction_sigma = kPi;
-  if (horizontal > 1e-9) {
+  if (horizontal > std::max(1e-9, kInclined * slope.angle_sigma)) {
     const Eigen::Vector3d aside(-n.y() / horizontal, n.x() / horizontal, 0.0);
     const double across = std::max(0.0, aside.dot(fit.normal_covariance * aside));
     slope.direction_sigma = std::min(kPi, std::sqrt(across) / horizontal);
@@ -418,7 +280,8 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
   const std::array<float, 3>& origin = origins.of(static_cast<std::size_t>(*members.begin()));
   const Eigen::Vector3f middle_beam =
       (centre - Eigen::Vector3f(origin[0], origin[1], origin[2])).normalized();
-  const std::optional<BeamPlane> first = consensus_plane(workspace, middle_beam, params, random);
+  const std::optional<BeamPlane> first =
+      consensus_plane(workspace, middle_beam, params, kSteepestFace, random);
   if (!first || !is_promising(workspace, *first, middle_beam, params)) {
     slope.status = FeatureStatus::kNotPlanar;
     return slope;
@@ -430,7 +293,8 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
     return slope;
   }
   const Eigen::Vector3d beam = middle_beam.cast<double>();
-  const Moments face = find_face(fit, workspace);
+  workspace.beyond.assign(workspace.points.size, 0);
+  Moments face = find_face(fit, workspace);
   const double width = width_of(face);
   if (face.n < 3.0 || width < std::max(kLeastWidth, kWidthSigmas * fit.range_sigma) ||
       rings_per_column(workspace.beams) < kLeastRingsPerColumn) {
@@ -446,6 +310,14 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
     slope.status = FeatureStatus::kNotPlanar;
     return slope;
   }
+  find_edges(fit, middle_beam, params, random, workspace);
+  fit =
+      fit_beam_plane(workspace.points, fit.plane, fit.range_sigma, params.least_sigma, kLastSteps);
+  if (!fit.ok) {
+    slope.status = FeatureStatus::kUncertain;
+    return slope;
+  }
+  face = find_face(fit, workspace);
   if (around != nullptr) add_beams_beside(origins, *around, origin, workspace);
   follow_beams(workspace.beams, workspace.rings);
   const auto on_face = std::count_if(workspace.rings.begin(), workspace.rings.end(),
@@ -456,7 +328,7 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
   }
   const Eigen::Matrix3d shared =
       estimate_ring_errors(points, origins, around, params.ring_sigma, workspace);
-  take_off_errors_of_rings(face, shared, params.ring_sigma, workspace, fit);
+  fit_with_errors_of_rings(face, shared, workspace, fit);
   report(fit, centre.cast<double>(), slope);
   const bool certain = fit.converged && slope.angle_sigma <= params.max_angle_sigma;
   const bool planar = slope.angle <= kSteepestFace;

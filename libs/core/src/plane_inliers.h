@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "mrpt_terrain/core/beam_plane.h"
 #include "mrpt_terrain/core/points.h"
 #include "mrpt_terrain/core/random.h"
 
@@ -14,6 +15,12 @@ namespace mrpt_terrain {
 struct Plane {
   float a, b, c, d;
 };
+
+/// The same plane for fits in double precision.
+[[nodiscard]] inline BeamPlane beam_plane_of(const Plane& plane) {
+  return {Eigen::Vector3f(plane.a, plane.b, plane.c).cast<double>().normalized(),
+          static_cast<double>(plane.d)};
+}
 
 /// Plane through three random points of different index; nothing if the three are on one line.
 /// Requires at least three points.

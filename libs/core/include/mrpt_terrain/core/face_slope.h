@@ -45,7 +45,9 @@ struct RingPart {
 /// Scratch memory of `estimate_face_slope`.
 struct FaceSlopeWorkspace {
   BeamPoints points;
-  std::vector<float> x, y, z;  ///< of the sample
+  std::vector<float> x, y, z;        ///< of the sample
+  std::vector<std::int32_t> rest;    ///< points that are not on the face
+  std::vector<std::uint8_t> beyond;  ///< per point: 1: on another surface
   std::vector<FaceBeam> beams;
   std::vector<FaceRing> rings;
   std::vector<RingPart> parts;
@@ -65,10 +67,12 @@ struct FaceSurroundings {
 ///
 /// Sample consensus (MSAC) among the thing's own points gives a first plane, Gauss-Newton steps
 /// with noise along the beams (beam_plane.h) make it the most likely one. The sides of a ramp and
-/// what stands on it are left out by Tukey's weights. The covariance is that of the fit, and that
-/// of errors that all points of a ring share (`BeamSlopeParams::ring_sigma`): with two or three
-/// rings on a face they are most of it. Where the same rings meet the ground beside the face, that
-/// tells a part of their errors, which are taken off.
+/// what stands on it are left out by Tukey's weights, and what is within the noise of the face but
+/// beyond its edges by the planes that it belongs to. Errors that all points of a ring share
+/// (`BeamSlopeParams::ring_sigma`) are estimated with the plane: with two or three rings on a face
+/// they are most of its error. Where the same rings meet the ground beside the face, that tells a
+/// part of them. The covariance is that of what both leave; the direction of a face that is
+/// inclined by less than three standard deviations has the standard deviation pi.
 ///
 /// \param members points of the thing
 /// \param seed, stream of the sample consensus
