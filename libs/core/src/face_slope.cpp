@@ -310,6 +310,7 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
     slope.status = FeatureStatus::kNotPlanar;
     return slope;
   }
+  const bool settled = fit.converged;
   find_edges(fit, middle_beam, params, random, workspace);
   fit =
       fit_beam_plane(workspace.points, fit.plane, fit.range_sigma, params.least_sigma, kLastSteps);
@@ -330,7 +331,7 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
       estimate_ring_errors(points, origins, around, params.ring_sigma, workspace);
   fit_with_errors_of_rings(face, shared, workspace, fit);
   report(fit, centre.cast<double>(), slope);
-  const bool certain = fit.converged && slope.angle_sigma <= params.max_angle_sigma;
+  const bool certain = settled && fit.converged && slope.angle_sigma <= params.max_angle_sigma;
   const bool planar = slope.angle <= kSteepestFace;
   slope.status = !planar   ? FeatureStatus::kNotPlanar
                  : certain ? FeatureStatus::kOk
