@@ -148,10 +148,16 @@ void end_trace(const RingPoint* rim_after, bool low_after, double step, double d
   const bool one = farther == kNone && open_before != open_after;
   const auto wall =
       1 + static_cast<std::ptrdiff_t>(depth / (step * static_cast<double>(trace.first->range)));
-  if (nearer <= narrow && (both || one) && is_deep_at_ends(depths, wall)) {
-    ++ring.traces;
-    ring.walled += trace.points;
-    ring.strictly += both ? trace.points : 0;
+  const bool walled = nearer <= narrow && (both || one);
+  if ((walled || both) && is_deep_at_ends(depths, wall)) {
+    if (walled) {
+      ++ring.traces;
+      ring.walled += trace.points;
+      ring.strictly += both ? trace.points : 0;
+    } else {
+      ++ring.oblique_traces;
+      ring.oblique += trace.points;
+    }
   }
   trace.first = nullptr;
   trace.points = 0;
@@ -187,6 +193,9 @@ void follow(const std::vector<RingPoint>& rings, std::size_t start, double step,
   evidence.walled += ring.walled;
   evidence.strictly += ring.strictly;
   evidence.rings += ring.walled >= 2 ? 1 : 0;
+  evidence.oblique_traces += ring.oblique_traces;
+  evidence.oblique += ring.oblique;
+  evidence.oblique_rings += ring.walled < 2 && ring.walled + ring.oblique >= 2 ? 1 : 0;
 }
 
 }  // namespace
@@ -203,6 +212,13 @@ RingEvidence follow_rings(const std::vector<HolePoint>& points, const BeamOrigin
       follow(workspace.rings, i, step, depth, workspace.values, evidence);
   }
   return evidence;
+}
+
+void count_oblique(RingEvidence& rings) {
+  rings.traces += rings.oblique_traces;
+  rings.walled += rings.oblique;
+  rings.strictly += rings.oblique;
+  rings.rings += rings.oblique_rings;
 }
 
 }  // namespace mrpt_terrain

@@ -14,6 +14,8 @@ struct RingEvidence {
   int walled = 0;      ///< points of the floor in traces between walls
   int strictly = 0;    ///< of these, in traces of which both ends are seen
   int traces = 0;      ///< over the floor, between walls
+  /// Of rings that run along walls at both ends, not more than 0.3 m: not in the numbers above.
+  int oblique = 0, oblique_traces = 0, oblique_rings = 0;
   double noise = 0.0;  ///< standard deviation of heights between neighbours on a ring, metres
 };
 
@@ -28,5 +30,9 @@ struct RingEvidence {
 [[nodiscard]] RingEvidence follow_rings(const std::vector<HolePoint>& points,
                                         const BeamOrigins& origins, double depth,
                                         HoleWorkspace& workspace);
+
+/// Takes traces between oblique walls as traces between walls. Dips of rolling ground have such
+/// traces, too; so another trace has to show that there are walls.
+void count_oblique(RingEvidence& rings);
 
 }  // namespace mrpt_terrain

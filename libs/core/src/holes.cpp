@@ -481,13 +481,15 @@ bool has_walls(HoleCase& hole, const HoleWindow& window, const HoleCounts& count
   }
   collect_points_ahead(hole, window);
   rings = follow_rings(hole.workspace.points, hole.input.origins, hole.depth, hole.workspace);
+  const bool even = hole.rim.sigma <= params.rim_depth * hole.depth;
+  if (even && rings.strictly >= kLeastWalled) count_oblique(rings);
   const double uneven =
       std::sqrt(std::max(0.0, hole.rim.sigma * hole.rim.sigma - rings.noise * rings.noise));
   if (uneven > params.uneven_depth * hole.depth) return false;
   if (rings.walled < kLeastWalled || rings.walled < kLeastTrace * rings.traces) return false;
   if (rings.walled < params.walled * counts.measured) return false;
   if (rings.rings >= 2) return true;
-  return hole.rim.sigma <= params.rim_depth * hole.depth && rings.strictly >= kLeastWalled;
+  return even && rings.strictly >= kLeastWalled;
 }
 
 HoleDescription describe_hole(const HoleCase& hole, const HoleCounts& counts,
