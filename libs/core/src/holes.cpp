@@ -25,6 +25,9 @@ constexpr float kBelowRim = 0.02F;
 constexpr float kHanging = 0.5F;
 // Walls of a hole end up to this far above its rim, metres.
 constexpr float kWallTop = 0.05F;
+// A cell at the edge of a hole holds points of its rim and of its floor: it may belong to the hole if
+// it lies so deep on average and its lowest point so deep, over the depth that other cells need.
+constexpr float kEdgeMean = 0.5F, kEdgeLowest = 2.0F;
 // Cells of one hole are up to this many cells apart.
 constexpr int kApart = 2;
 // The rim is looked for up to this far from the cells of a hole, metres...
@@ -171,7 +174,10 @@ void mark_candidates(const HoleInput& input, const HoleParams& params, HoleWorks
     cells.rim[slot] = rim_at(input.field.surface, workspace, static_cast<float>(centre.x),
                              static_cast<float>(centre.y), cells.ground[slot]);
     const bool floor = !holds_thing(cells, slot) && cells.on[slot] + cells.below[slot] > 0;
-    workspace.candidate[slot] = floor && depth_of(cells, slot) >= least ? 1 : 0;
+    const float depth = depth_of(cells, slot);
+    const bool deep = depth >= least || (depth >= kEdgeMean * least &&
+                                         cells.rim[slot] - grid.h_min[slot] >= kEdgeLowest * least);
+    workspace.candidate[slot] = floor && deep ? 1 : 0;
   }
 }
 
