@@ -73,8 +73,8 @@ void sum_heights(const GroundSurface& surface, const RimLattice& rim, bool again
     const std::size_t at = rim.at(surface.cells.cell[slot]);
     const float height = workspace.height[slot];
     if (again) {
-      const RimSums& mean = workspace.around[at];
-      if (mean.weight > 0.0F && height < mean.sum / mean.weight - kBelowRim) continue;
+      const RimMean& mean = workspace.around[at];
+      if (mean.weight > 0.0F && height < mean.height - kBelowRim) continue;
     }
     workspace.sums[at].sum += surface.ground[slot].weight * height;
     workspace.sums[at].weight += surface.ground[slot].weight;
@@ -95,7 +95,7 @@ void sum_around(const GroundSurface& surface, const RimLattice& rim, HoleWorkspa
         total.weight += from.weight;
       }
     }
-    workspace.around[at] = total;
+    if (total.weight > 0.0F) workspace.around[at] = {total.sum / total.weight, total.weight};
   }
 }
 
@@ -103,9 +103,8 @@ void sum_around(const GroundSurface& surface, const RimLattice& rim, HoleWorkspa
 void raise_base_to_rim(const GroundSurface& surface, HoleWorkspace& workspace) {
   const RimLattice rim{surface.lattice().side >> kRimLevel};
   for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
-    const RimSums& mean = workspace.around[rim.at(surface.cells.cell[slot])];
-    workspace.base[slot].height +=
-        mean.weight > 0.0F ? mean.sum / mean.weight : workspace.height[slot];
+    const RimMean& mean = workspace.around[rim.at(surface.cells.cell[slot])];
+    workspace.base[slot].height += mean.weight > 0.0F ? mean.height : workspace.height[slot];
   }
   // Cells without slots are zero always.
   for (const LatticeCell cell : surface.cells.cell) workspace.sums[rim.at(cell)] = {};
@@ -278,14 +277,14 @@ void add_points(HoleCase& hole, const HoleWindow& window, bool far, std::size_t 
   for (std::int32_t k = surface.cells.first[slot]; k < surface.cells.first[slot + 1]; ++k) {
     if (hole.input.field.support[static_cast<std::size_t>(k)] == Support::kAbove) continue;
     const CellPoint& p = surface.cells.points[static_cast<std::size_t>(k)];
-    const bool near = window.contains(p.x, p.y);
+    // The window holds all cells of the floor and those next to them.
+    if (window.contains(p.x, p.y) == far) continue;
     CellIndex cell;
-    if ((near && far) || !grid.geometry.cell_at(p.x, p.y, cell)) continue;
+    if (!grid.geometry.cell_at(p.x, p.y, cell)) continue;
     const Slot of = grid.slot_at(cell);
     if (of == kUnobserved) continue;
     HoleZone zone = hole.workspace.zone[static_cast<std::size_t>(of)];
-    if (zone == HoleZone::kFar && near) zone = HoleZone::kRim;
-    if ((zone == HoleZone::kFar) != far) continue;
+    if (zone == HoleZone::kFar && !far) zone = HoleZone::kRim;
     const float above_cell = hole.cells.rim[static_cast<std::size_t>(of)] - p.z;
     hole.workspace.points.push_back({p.x, p.y, p.z, p.index, of, 1.0F, above_cell, zone});
   }

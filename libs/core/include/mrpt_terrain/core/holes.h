@@ -95,9 +95,14 @@ struct HoleDescription {
   HoleKind kind = HoleKind::kFloor;
 };
 
-/// Mean height of the ground about a cell of the rim's level.
+/// Sums over the ground in a cell of the rim's level.
 struct RimSums {
   float sum = 0.0F, weight = 0.0F;
+};
+
+/// Mean height of the ground about a cell of the rim's level; weight 0: there is none.
+struct RimMean {
+  float height = 0.0F, weight = 0.0F;
 };
 
 /// Height of the rim at the centre of a cell, and how it changes in it.
@@ -158,7 +163,8 @@ struct RimPoints {
 
 /// Scratch memory of `find_holes`.
 struct HoleWorkspace {
-  std::vector<RimSums> sums, around;    ///< per cell of the rim's level
+  std::vector<RimSums> sums;            ///< per cell of the rim's level
+  std::vector<RimMean> around;          ///< per cell of the rim's level
   std::vector<float> height;            ///< per slot of the surface: low height above level 3
   std::vector<RimBase> base;            ///< per slot of the surface
   std::vector<std::uint8_t> candidate;  ///< per slot of the grid
