@@ -10,10 +10,10 @@ namespace mrpt_terrain {
 
 /// What the rings of the sensor say about a hole.
 struct RingEvidence {
-  int rings = 0;       ///< with at least two points of the floor between walls
-  int walled = 0;      ///< points of the floor in traces between walls
-  int strictly = 0;    ///< of these, in traces of which both ends are seen
-  int traces = 0;      ///< over the floor, between walls
+  int rings = 0;     ///< with at least two points of the floor between walls
+  int walled = 0;    ///< points of the floor in traces between walls
+  int strictly = 0;  ///< of these, in traces of which both ends are seen
+  int traces = 0;    ///< over the floor, between walls
   /// Of rings that run along walls at both ends, not more than 0.3 m: not in the numbers above.
   int oblique = 0, oblique_traces = 0, oblique_rings = 0;
   double noise = 0.0;  ///< standard deviation of heights between neighbours on a ring, metres

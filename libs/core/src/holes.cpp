@@ -25,8 +25,9 @@ constexpr float kBelowRim = 0.02F;
 constexpr float kHanging = 0.5F;
 // Walls of a hole end up to this far above its rim, metres.
 constexpr float kWallTop = 0.05F;
-// A cell at the edge of a hole holds points of its rim and of its floor: it may belong to the hole if
-// it lies so deep on average and its lowest point so deep, over the depth that other cells need.
+// A cell at the edge of a hole holds points of its rim and of its floor: it may be a hole, though no
+// cell of floor is there, if it lies so deep on average and its lowest point so deep, over the depth
+// that a cell of floor needs.
 constexpr float kEdgeMean = 0.5F, kEdgeLowest = 2.0F;
 // Cells of one hole are up to this many cells apart.
 constexpr int kApart = 2;
@@ -58,6 +59,9 @@ constexpr double kBothEnds = 0.8;
 // Walls: traces of at least so many points on average, and so many points in all.
 constexpr double kLeastTrace = 1.5;
 constexpr int kLeastWalled = 4;
+
+// Kinds of candidates.
+constexpr std::uint8_t kFloorCell = 1, kEdgeCell = 2;
 
 struct RimLattice {
   int side;
@@ -174,22 +178,35 @@ void mark_candidates(const HoleInput& input, const HoleParams& params, HoleWorks
                              static_cast<float>(centre.y), cells.ground[slot]);
     const bool floor = !holds_thing(cells, slot) && cells.on[slot] + cells.below[slot] > 0;
     const float depth = depth_of(cells, slot);
-    const bool deep = depth >= least || (depth >= kEdgeMean * least &&
-                                         cells.rim[slot] - grid.h_min[slot] >= kEdgeLowest * least);
-    workspace.candidate[slot] = floor && deep ? 1 : 0;
+    const bool edge =
+        depth >= kEdgeMean * least && cells.rim[slot] - grid.h_min[slot] >= kEdgeLowest * least;
+    if (floor && (edge || depth >= least))
+      workspace.candidate[slot] = depth >= least ? kFloorCell : kEdgeCell;
   }
 }
 
-// Takes the candidates that are connected with the first one.
+// Takes the candidates of the same kind that are connected with the first one.
 void collect_members(const ElevationGrid& grid, std::size_t first, HoleWorkspace& workspace) {
+  const std::uint8_t kind = workspace.candidate[first];
   workspace.members.assign(1, static_cast<std::int32_t>(first));
   workspace.candidate[first] = 0;
   for (std::size_t next = 0; next < workspace.members.size(); ++next) {
     const auto slot = static_cast<std::size_t>(workspace.members[next]);
     for_slots_around(grid, slot, kApart, [&](std::size_t other) {
-      if (workspace.candidate[other] == 0) return;
+      if (workspace.candidate[other] != kind) return;
       workspace.candidate[other] = 0;
       workspace.members.push_back(static_cast<std::int32_t>(other));
+    });
+  }
+}
+
+// What belongs to a hole and its edges is no other one.
+void leave_out(const ElevationGrid& grid, HoleWorkspace& workspace) {
+  for (const std::int32_t member : workspace.members) {
+    const auto slot = static_cast<std::size_t>(member);
+    workspace.candidate[slot] = 0;
+    for_slots_around(grid, slot, kApart, [&workspace](std::size_t near) {
+      if (workspace.candidate[near] == kEdgeCell) workspace.candidate[near] = 0;
     });
   }
 }
@@ -526,7 +543,7 @@ HoleDescription describe_hole(const HoleCase& hole, const HoleCounts& counts,
   result.slot = *std::min_element(hole.workspace.members.begin(), hole.workspace.members.end());
   double x = 0.0, y = 0.0, n = 0.0;
   for (const HolePoint& p : hole.workspace.points) {
-    if (p.zone != HoleZone::kFloor) continue;
+    if (p.zone != HoleZone::kFloor || p.depth < kFloorShare * hole.depth) continue;
     x += p.x;
     y += p.y;
     n += 1.0;
@@ -584,20 +601,21 @@ void find_holes(const HoleInput& input, const HoleParams& params, HoleWorkspace&
   take_back_stray_cells(input, params.least_points, cells, workspace, ground);
   measure_rim(input.field, workspace);
   mark_candidates(input, params, workspace, cells);
-  for (std::size_t slot = 0; slot < input.grid.observed(); ++slot) {
-    if (workspace.candidate[slot] == 0) continue;
-    collect_members(input.grid, slot, workspace);
-    HoleCase hole{input, params, cells, workspace, {}};
-    HoleDescription description;
-    const bool found = is_hole(hole, description);
-    clear_zones(hole);
-    if (!found) continue;
-    holes.push_back(description);
-    for (const std::int32_t member : workspace.members) {
-      ground.rule[static_cast<std::size_t>(member)] = GroundRule::kLow;
-      workspace.candidate[static_cast<std::size_t>(member)] = 0;
+  for (const std::uint8_t kind : {kFloorCell, kEdgeCell}) {
+    for (std::size_t slot = 0; slot < input.grid.observed(); ++slot) {
+      if (workspace.candidate[slot] != kind) continue;
+      collect_members(input.grid, slot, workspace);
+      HoleCase hole{input, params, cells, workspace, {}};
+      HoleDescription description;
+      const bool found = is_hole(hole, description);
+      clear_zones(hole);
+      if (!found) continue;
+      holes.push_back(description);
+      leave_out(input.grid, workspace);
+      for (const std::int32_t member : workspace.members)
+        ground.rule[static_cast<std::size_t>(member)] = GroundRule::kLow;
+      add_cells(input.grid, workspace.members, hole_cells);
     }
-    add_cells(input.grid, workspace.members, hole_cells);
   }
 }
 

@@ -167,7 +167,7 @@ struct HoleWorkspace {
   std::vector<RimMean> around;          ///< per cell of the rim's level
   std::vector<float> height;            ///< per slot of the surface: low height above level 3
   std::vector<RimBase> base;            ///< per slot of the surface
-  std::vector<std::uint8_t> candidate;  ///< per slot of the grid
+  std::vector<std::uint8_t> candidate;  ///< per slot of the grid: 1 cell of floor, 2 of an edge
   std::vector<HoleZone> zone;           ///< per slot of the grid; kFar between holes
   std::vector<std::int32_t> members;    ///< slots of one hole
   std::vector<std::int32_t> deep, all;  ///< per slot: deep points and points, where looked at
@@ -190,15 +190,16 @@ struct HoleInput {
 ///
 /// The height of the rim is the mean of the ground within about 1.2 m, which the ground reference,
 /// that goes down into holes, is compared with; ground that lies low does not count in it. Cells
-/// that lie below the rim, up to two cells apart, are a hole if they lie deep below a surface
+/// that lie below the rim, up to two cells apart, and where there are none, those of which the
+/// lowest point does and the mean half as far, are a hole if they lie deep below a surface
 /// through the ground around, if that surface is even, if what is seen around them is rim on all
 /// sides, and if their walls are steep: if the traces of the rings over the floor end abruptly at
-/// the rim, left and right. Wide dips of rolling ground end gradually, and the foot of a step has a
-/// rim on one side only.
-/// \param[in,out] cells `rim` is filled in
-/// \param[in,out] ground cells of holes become `GroundRule::kLow`
-/// \param[out] holes one entry per hole, in the order of their first cells
-/// \param[out] hole_cells a row per hole: its cells, `CellId` numbers, ascending
+/// the rim, left and right. Where one does, others may run along a wall. Wide dips of rolling
+/// ground end gradually, and the foot of a step has a rim on one side only. \param[in,out] cells
+/// `rim` is filled in \param[in,out] ground cells of holes become `GroundRule::kLow` \param[out]
+/// holes one entry per hole, in the order of their first cells; after those of cells of floor,
+/// those of cells of edges \param[out] hole_cells a row per hole: its cells, `CellId` numbers,
+/// ascending
 void find_holes(const HoleInput& input, const HoleParams& params, HoleWorkspace& workspace,
                 FieldCells& cells, GroundSegmentation& ground, std::vector<HoleDescription>& holes,
                 IndexRows& hole_cells);
