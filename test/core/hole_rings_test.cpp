@@ -19,14 +19,15 @@ constexpr std::array<float, 3> kOrigin{0.0F, 0.0F, 1.0F};
 constexpr double kDepth = 0.1;
 constexpr double kStep = 0.2 * M_PI / 180.0;
 
-/// Points of rings at 5 m and farther, over 20 degrees, whose depths are told by the number of the
-/// step; beams that fall by the same angle go on to the floor. Zones as they lie at the hole.
-std::vector<HolePoint> rings_of(int count, const std::function<double(int)>& depth_of) {
+/// Points of rings at 5 m and farther, over 20 degrees, whose depths are told by the numbers of the
+/// ring and of the step; beams that fall by the same angle go on to the floor. Zones as they lie at
+/// the hole.
+std::vector<HolePoint> points_of(int count, const std::function<double(int, int)>& depth_of) {
   std::vector<HolePoint> points;
   for (int ring = 0; ring < count; ++ring) {
     const double fall = std::tan(std::atan(1.0 / 5.0) - ring * 0.01);
     for (int step = -50; step <= 50; ++step) {
-      const double depth = depth_of(step);
+      const double depth = depth_of(ring, step);
       const double range = (1.0 + depth) / fall, azimuth = step * kStep;
       const HoleZone zone = depth > 0.5 * kDepth ? HoleZone::kFloor : HoleZone::kRim;
       points.push_back({static_cast<float>(range * std::cos(azimuth)),
@@ -36,6 +37,11 @@ std::vector<HolePoint> rings_of(int count, const std::function<double(int)>& dep
     }
   }
   return points;
+}
+
+/// The same depths on all rings.
+std::vector<HolePoint> rings_of(int count, const std::function<double(int)>& depth_of) {
+  return points_of(count, [&](int, int step) { return depth_of(step); });
 }
 
 RingEvidence evidence_of(const std::vector<HolePoint>& points) {
@@ -62,6 +68,34 @@ TEST(HoleRings, GradualSidesAreNoWalls) {
       rings_of(3, [](int step) { return std::max(0.0, kDepth * (1.0 - std::abs(step) * 0.01)); }));
   EXPECT_EQ(evidence.rings, 0);
   EXPECT_EQ(evidence.walled, 0);
+}
+
+/// On the floor for 21 points, and halfway down the wall for so many steps at both ends.
+double oblique(int step, int halfway) {
+  if (std::abs(step) <= 10) return kDepth;
+  return std::abs(step) <= 10 + halfway ? 0.4 * kDepth : 0.0;
+}
+
+// A ring that runs along walls at both ends, over 11 steps or 0.19 m: no more than kWidestWall, but
+// more than 2.6 steps and than the depth. 20 steps are 0.37 m.
+TEST(HoleRings, ObliqueWallsAreCountedApart) {
+  const auto second = [](int halfway) {
+    return points_of(2, [halfway](int ring, int step) { return oblique(step, ring * halfway); });
+  };
+  RingEvidence evidence = evidence_of(second(10));
+  EXPECT_EQ(evidence.walled, 21);
+  EXPECT_EQ(evidence.rings, 1);
+  EXPECT_EQ(evidence.oblique, 21);
+  EXPECT_EQ(evidence.oblique_traces, 1);
+  EXPECT_EQ(evidence.oblique_rings, 1);
+  count_oblique(evidence);
+  EXPECT_EQ(evidence.walled, 42);
+  EXPECT_EQ(evidence.strictly, 42);
+  EXPECT_EQ(evidence.traces, 2);
+  EXPECT_EQ(evidence.rings, 2);
+  evidence = evidence_of(second(20));
+  EXPECT_EQ(evidence.walled, 21);
+  EXPECT_EQ(evidence.oblique, 0);
 }
 
 // Hollows of rolling ground deepen from 0.56 of the depth at both ends to 1.4 in the middle (a

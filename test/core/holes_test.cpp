@@ -175,6 +175,22 @@ TEST(Holes, AHoleOfTwoCentimetresIsNone) {
   EXPECT_FALSE(holes_in(worlds::patch_with_hole(kPatch, kPothole, 0.06)).cells().empty());
 }
 
+// A quarter of each of four cells is floor: a depth of 10 cm is 2.5 cm on average, less than
+// `least_depth`. A hole of 4 cm, as deep on average as 1 cm, is none, and has no lowest points.
+TEST(Holes, AHoleThatFillsNoCellIsFound) {
+  const auto hole_of = [](double depth) {
+    return holes_in(ground_of([depth](double x, double y) {
+      return std::abs(x - 2.2) < 0.1 && std::abs(y - 1.2) < 0.1 ? -depth : 0.0;
+    }));
+  };
+  const Holes holes = hole_of(0.1);
+  ASSERT_EQ(holes.found.size(), 1U);
+  EXPECT_NEAR(holes.found[0].centre.x, 2.2, 0.1);
+  EXPECT_NEAR(holes.found[0].centre.y, 1.2, 0.1);
+  EXPECT_NEAR(holes.found[0].depth, 0.1, 0.01);
+  EXPECT_TRUE(hole_of(0.04).found.empty());
+}
+
 // Half a metre wide, right through the patch.
 TEST(Holes, ADitchIsFound) {
   const Holes holes = holes_in(worlds::patch_with_hole(kPatch, {2.0, 2.6, -6.0, 6.0}, 0.15));
