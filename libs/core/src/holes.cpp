@@ -25,9 +25,9 @@ constexpr float kBelowRim = 0.02F;
 constexpr float kHanging = 0.5F;
 // Walls of a hole end up to this far above its rim, metres.
 constexpr float kWallTop = 0.05F;
-// A cell at the edge of a hole holds points of its rim and of its floor: it may be a hole, though no
-// cell of floor is there, if it lies so deep on average and its lowest point so deep, over the depth
-// that a cell of floor needs.
+// A cell at the edge of a hole holds points of its rim and of its floor: it may be a hole, though
+// no cell of floor is there, if it lies so deep on average and its lowest point so deep, over the
+// depth that a cell of floor needs.
 constexpr float kEdgeMean = 0.5F, kEdgeLowest = 2.0F;
 // Cells of one hole are up to this many cells apart.
 constexpr int kApart = 2;
@@ -200,7 +200,8 @@ void collect_members(const ElevationGrid& grid, std::size_t first, HoleWorkspace
   }
 }
 
-// What belongs to a hole and its edges is no other one.
+// What belongs to a hole and its edges is no other one; nor is what lies beside low cells that have
+// been looked at and are none: the foot of a kerb has such edges all along.
 void leave_out(const ElevationGrid& grid, HoleWorkspace& workspace) {
   for (const std::int32_t member : workspace.members) {
     const auto slot = static_cast<std::size_t>(member);
@@ -609,9 +610,9 @@ void find_holes(const HoleInput& input, const HoleParams& params, HoleWorkspace&
       HoleDescription description;
       const bool found = is_hole(hole, description);
       clear_zones(hole);
+      leave_out(input.grid, workspace);
       if (!found) continue;
       holes.push_back(description);
-      leave_out(input.grid, workspace);
       for (const std::int32_t member : workspace.members)
         ground.rule[static_cast<std::size_t>(member)] = GroundRule::kLow;
       add_cells(input.grid, workspace.members, hole_cells);
