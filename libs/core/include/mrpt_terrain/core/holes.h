@@ -195,11 +195,12 @@ struct HoleInput {
 /// through the ground around, if that surface is even, if what is seen around them is rim on all
 /// sides, and if their walls are steep: if the traces of the rings over the floor end abruptly at
 /// the rim, left and right. Where one does, others may run along a wall. Wide dips of rolling
-/// ground end gradually, and the foot of a step has a rim on one side only. \param[in,out] cells
-/// `rim` is filled in \param[in,out] ground cells of holes become `GroundRule::kLow` \param[out]
-/// holes one entry per hole, in the order of their first cells; after those of cells of floor,
-/// those of cells of edges \param[out] hole_cells a row per hole: its cells, `CellId` numbers,
-/// ascending
+/// ground end gradually, and the foot of a step has a rim on one side only.
+/// \param[in,out] cells `rim` is filled in
+/// \param[in,out] ground cells of holes become `GroundRule::kLow`
+/// \param[out] holes one entry per hole, in the order of their first cells; after those of cells of
+/// floor, those of cells of edges
+/// \param[out] hole_cells a row per hole: its cells, `CellId` numbers, ascending
 void find_holes(const HoleInput& input, const HoleParams& params, HoleWorkspace& workspace,
                 FieldCells& cells, GroundSegmentation& ground, std::vector<HoleDescription>& holes,
                 IndexRows& hole_cells);
