@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ditch_cells.h"
 #include "ground_cells.h"
 #include "mrpt_terrain/core/random.h"
 #include "surface_levels.h"
@@ -168,6 +169,7 @@ void find_ground_surface(const ScanView& scan, const GroundSurfaceParams& params
   measure_ground_cells(scan.origins, params, workspace, result);
   find_plane(params, workspace, result);
   find_tall_things(result, workspace);
+  find_ditch_cells(result, workspace);
   start_levels(result, workspace);
   correct_level(params, kSurfaceLevels - 1, workspace, result);
   for (int level = kSurfaceLevels - 2; level >= kRawLevel; --level) {

@@ -25,6 +25,9 @@ constexpr int kCoarseLevel = 3;
 constexpr float kBesideTallBend = 0.75F;  // of `rough_bend`
 constexpr float kBesideTallWeight = 0.2F;
 
+// A height, metres, that is above all levels: out of tolerance.
+constexpr float kUnheard = 1e9F;
+
 int side_of(const SquareLattice& lattice, int level) { return lattice.side >> level; }
 
 // One row of the finer level, from rows of the coarser level: `near` is the one it lies in.
@@ -232,7 +235,7 @@ void hear_cells(const GroundSurface& surface, int level, GroundSurfaceWorkspace&
   workspace.touched.resize(n + 1);
   for (std::size_t slot = 0; slot < n; ++slot) {
     const GroundCell& ground = surface.ground[slot];
-    heard.low[slot] = ground.low;
+    heard.low[slot] = workspace.in_ditch[slot] != 0 ? kUnheard : ground.low;
     heard.points[slot] = ground.points;
     heard.smooth[slot] = ground.smooth;
     heard.weight[slot] = ground.weight;

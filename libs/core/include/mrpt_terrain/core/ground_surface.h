@@ -138,6 +138,9 @@ struct GroundSurfaceWorkspace {
   std::vector<HeightSums> sums;  ///< per slot: low points, about the cell's centre in x and y
   std::vector<float> part;       ///< per slot: share of the low band
   std::vector<std::uint8_t> beside_tall;  ///< per slot: 1 where something tall stands nearby
+  std::vector<std::uint8_t> in_ditch;     ///< per slot: 1 in a ditch, which levels do not follow
+  std::vector<float> above_plane;         ///< per slot: low height above the plane
+  std::vector<float> block_tops;          ///< per block of cells: highest smooth one
   std::vector<std::uint64_t> layers, layers_in_row;  ///< per block of cells: a bit per height
   std::vector<float> even;                           ///< per slot: smoothness by roughness alone
   std::vector<float> firm;  ///< per slot: smoothness by scatter along the beams
