@@ -26,9 +26,15 @@ constexpr int kAround = 12;
 constexpr float kRare = 0.3F;
 // As high are those up to this many metres, and this share of the depth, above or below.
 constexpr float kAsHigh = 0.1F, kAsHighShare = 0.2F;
-// Blocks of cells remember the highest side in them, so that most cells need no closer look.
+// Blocks of cells remember the highest side in them, and how high the lower one of two sides may be
+// at most, so that most cells need no closer look.
 constexpr int kBlockLevel = 2;
 constexpr int kBlocks = 3;
+
+constexpr float kUnknown = std::numeric_limits<float>::max();
+
+// One cell on.
+constexpr LatticeCell kAlongRows{0, 1}, kAlongColumns{1, 0};
 
 class DitchFinder {
  public:
@@ -37,20 +43,20 @@ class DitchFinder {
         cells_(surface.cells),
         height_(workspace.above_plane),
         tops_(workspace.block_tops),
+        sides_(workspace.block_sides),
         side_(surface.lattice().side),
         blocks_(side_ >> kBlockLevel) {
     measure_heights();
     find_tops();
   }
 
-  [[nodiscard]] bool is_in_ditch(std::size_t slot) const {
+  [[nodiscard]] bool is_in_ditch(std::size_t slot) {
     const LatticeCell at = cells_.cell[slot];
-    float depth = 0.0F;
-    for (const LatticeCell step : {LatticeCell{1, 0}, LatticeCell{0, 1}}) {
-      if (may_have_sides(at, step, height_[slot]))
-        depth = std::max(depth, depth_between(at, step, height_[slot]));
-    }
-    return depth >= kShallowest && is_rare(at, height_[slot], depth);
+    const float low = height_[slot];
+    if (highest_sides(at) < low + kShallowest) return false;
+    const float depth =
+        std::max(depth_between(at, kAlongRows, low), depth_between(at, kAlongColumns, low));
+    return depth >= kShallowest && is_rare(at, low, depth);
   }
 
  private:
@@ -74,8 +80,9 @@ class DitchFinder {
     return ground.weight >= kLeastWeight && ground.smooth >= kLeastSmooth;
   }
   void find_tops() {
-    tops_.assign(static_cast<std::size_t>(blocks_) * static_cast<std::size_t>(blocks_),
-                 std::numeric_limits<float>::lowest());
+    const std::size_t n = static_cast<std::size_t>(blocks_) * static_cast<std::size_t>(blocks_);
+    tops_.assign(n, std::numeric_limits<float>::lowest());
+    sides_.assign(n, kUnknown);
     for (std::size_t slot = 0; slot < cells_.occupied(); ++slot) {
       if (!is_side(slot)) continue;
       const LatticeCell at = cells_.cell[slot];
@@ -86,19 +93,26 @@ class DitchFinder {
   [[nodiscard]] std::size_t block(int row, int column) const {
     return static_cast<std::size_t>(row * blocks_ + column);
   }
-  // Whether blocks on both sides hold ground that is high enough.
-  [[nodiscard]] bool may_have_sides(LatticeCell at, LatticeCell step, float low) const {
+  [[nodiscard]] float highest_on(int row, int column, LatticeCell step, int sign) const {
+    float highest = tops_[block(row, column)];
+    for (int k = 1; k <= kBlocks; ++k) {
+      const int r = row + sign * k * step.row, c = column + sign * k * step.column;
+      if (r < 0 || c < 0 || r >= blocks_ || c >= blocks_) break;
+      highest = std::max(highest, tops_[block(r, c)]);
+    }
+    return highest;
+  }
+  // How high the lower one of two opposite sides of the cells of a block is at most.
+  float highest_sides(LatticeCell at) {
     const int row = at.row >> kBlockLevel, column = at.column >> kBlockLevel;
-    const auto top = [&](int sign) {
-      float highest = tops_[block(row, column)];
-      for (int k = 1; k <= kBlocks; ++k) {
-        const int r = row + sign * k * step.row, c = column + sign * k * step.column;
-        if (r < 0 || c < 0 || r >= blocks_ || c >= blocks_) break;
-        highest = std::max(highest, tops_[block(r, c)]);
-      }
-      return highest;
-    };
-    return top(1) >= low + kShallowest && top(-1) >= low + kShallowest;
+    float& known = sides_[block(row, column)];
+    if (known != kUnknown) return known;
+    known = std::numeric_limits<float>::lowest();
+    for (const LatticeCell step : {kAlongRows, kAlongColumns}) {
+      const float after = highest_on(row, column, step, 1);
+      known = std::max(known, std::min(after, highest_on(row, column, step, -1)));
+    }
+    return known;
   }
 
   // Slot of a cell that is so many steps away, or -1.
@@ -169,13 +183,14 @@ class DitchFinder {
   const CellPoints& cells_;
   std::vector<float>& height_;  ///< per slot: low height above the plane near the robot
   std::vector<float>& tops_;    ///< per block: highest side
+  std::vector<float>& sides_;   ///< per block: `highest_sides`, where asked for
   int side_, blocks_;
 };
 
 }  // namespace
 
 void find_ditch_cells(const GroundSurface& surface, GroundSurfaceWorkspace& workspace) {
-  const DitchFinder finder(surface, workspace);
+  DitchFinder finder(surface, workspace);
   const std::size_t n = surface.cells.occupied();
   workspace.in_ditch.resize(n);
   for (std::size_t slot = 0; slot < n; ++slot)

@@ -141,6 +141,7 @@ struct GroundSurfaceWorkspace {
   std::vector<std::uint8_t> in_ditch;     ///< per slot: 1 in a ditch, which levels do not follow
   std::vector<float> above_plane;         ///< per slot: low height above the plane
   std::vector<float> block_tops;          ///< per block of cells: highest smooth one
+  std::vector<float> block_sides;         ///< per block: how high the sides of a ditch may be
   std::vector<std::uint64_t> layers, layers_in_row;  ///< per block of cells: a bit per height
   std::vector<float> even;                           ///< per slot: smoothness by roughness alone
   std::vector<float> firm;  ///< per slot: smoothness by scatter along the beams
