@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slots_around.h"
+
 namespace mrpt_terrain {
 namespace {
 
@@ -102,12 +104,6 @@ class Continuation {
   }
 
  private:
-  [[nodiscard]] Slot slot_at(const Position2& at) const {
-    CellIndex cell;
-    return pieces_.grid.geometry.cell_at(at.x, at.y, cell) ? pieces_.grid.slot_at(cell)
-                                                           : kUnobserved;
-  }
-
   // Looks along a long thing, from its end on, for what it goes on with.
   void follow(const ThingPiece& piece, const Line& line, float end) const {
     const float length = piece.end - piece.begin + cell_;
@@ -116,7 +112,7 @@ class Continuation {
       bool own = false;
       const ThingPiece* met = nullptr;
       for (const float across : {0.0F, -cell_, cell_}) {
-        const Slot seen = slot_at(line.place(s, across));
+        const Slot seen = slot_at(pieces_.grid, line.place(s, across));
         if (seen == kUnobserved) continue;
         const bool member = pieces_.is_member(static_cast<std::size_t>(seen));
         if (!member && across == 0.0F) return;  // the ground is seen there
@@ -161,7 +157,7 @@ class Continuation {
     const Gap gap{first.end, second.begin};
     if (width > kLowWidth || gap.length() > kRingGap) return false;
     for (float s = gap.begin + cell_; s < gap.end; s += cell_) {
-      const Slot seen = slot_at(line.place(s, 0.0F));
+      const Slot seen = slot_at(pieces_.grid, line.place(s, 0.0F));
       if (seen != kUnobserved && !pieces_.is_member(static_cast<std::size_t>(seen))) return false;
     }
     return is_closed(p, q, line, gap);

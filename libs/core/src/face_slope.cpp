@@ -262,6 +262,45 @@ bool is_seen_from_above(const BeamPlaneFit& fit, const Eigen::Vector3d& beam,
          fit.range_sigma * std::hypot(grazing, kAcrossBeam) <= params.max_scatter;
 }
 
+/// What a face is measured with.
+struct FaceInput {
+  const PointsView& points;
+  const BeamOrigins& origins;
+  const FaceSurroundings* around;
+  const BeamSlopeParams& params;
+  const std::array<float, 3>& origin;  ///< of the beams to the thing
+  Eigen::Vector3f centre, beam;        ///< of the thing, and the mean direction of these beams
+};
+
+// The slope of a face that has been found, without what is beyond its edges and with the errors of
+// its rings.
+void measure_face(const FaceInput& input, RandomGenerator& random, FaceSlopeWorkspace& workspace,
+                  BeamPlaneFit& fit, Slope& slope) {
+  const BeamSlopeParams& params = input.params;
+  slope.status = FeatureStatus::kUncertain;
+  const bool settled = fit.converged;
+  find_edges(fit, input.beam, params, random, workspace);
+  fit =
+      fit_beam_plane(workspace.points, fit.plane, fit.range_sigma, params.least_sigma, kLastSteps);
+  if (!fit.ok) return;
+  const Moments face = find_face(fit, workspace);
+  if (input.around != nullptr)
+    add_beams_beside(input.origins, *input.around, input.origin, workspace);
+  follow_beams(workspace.beams, workspace.rings);
+  const auto on_face = std::count_if(workspace.rings.begin(), workspace.rings.end(),
+                                     [](const FaceRing& ring) { return ring.on_face; });
+  if (on_face < kFewestRings) return;
+  const Eigen::Matrix3d shared =
+      estimate_ring_errors(input.points, input.origins, input.around, params.ring_sigma, workspace);
+  fit_with_errors_of_rings(face, shared, workspace, fit);
+  report(fit, input.centre.cast<double>(), slope);
+  if (slope.angle > kSteepestFace) {
+    slope.status = FeatureStatus::kNotPlanar;
+  } else if (settled && fit.converged && slope.angle_sigma <= params.max_angle_sigma) {
+    slope.status = FeatureStatus::kOk;
+  }
+}
+
 }  // namespace
 
 Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, IndexRange members,
@@ -294,7 +333,7 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
   }
   const Eigen::Vector3d beam = middle_beam.cast<double>();
   workspace.beyond.assign(workspace.points.size, 0);
-  Moments face = find_face(fit, workspace);
+  const Moments face = find_face(fit, workspace);
   const double width = width_of(face);
   if (face.n < 3.0 || width < std::max(kLeastWidth, kWidthSigmas * fit.range_sigma) ||
       rings_per_column(workspace.beams) < kLeastRingsPerColumn) {
@@ -310,32 +349,8 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
     slope.status = FeatureStatus::kNotPlanar;
     return slope;
   }
-  const bool settled = fit.converged;
-  find_edges(fit, middle_beam, params, random, workspace);
-  fit =
-      fit_beam_plane(workspace.points, fit.plane, fit.range_sigma, params.least_sigma, kLastSteps);
-  if (!fit.ok) {
-    slope.status = FeatureStatus::kUncertain;
-    return slope;
-  }
-  face = find_face(fit, workspace);
-  if (around != nullptr) add_beams_beside(origins, *around, origin, workspace);
-  follow_beams(workspace.beams, workspace.rings);
-  const auto on_face = std::count_if(workspace.rings.begin(), workspace.rings.end(),
-                                     [](const FaceRing& ring) { return ring.on_face; });
-  if (on_face < kFewestRings) {
-    slope.status = FeatureStatus::kUncertain;
-    return slope;
-  }
-  const Eigen::Matrix3d shared =
-      estimate_ring_errors(points, origins, around, params.ring_sigma, workspace);
-  fit_with_errors_of_rings(face, shared, workspace, fit);
-  report(fit, centre.cast<double>(), slope);
-  const bool certain = settled && fit.converged && slope.angle_sigma <= params.max_angle_sigma;
-  const bool planar = slope.angle <= kSteepestFace;
-  slope.status = !planar   ? FeatureStatus::kNotPlanar
-                 : certain ? FeatureStatus::kOk
-                           : FeatureStatus::kUncertain;
+  measure_face({points, origins, around, params, origin, centre, middle_beam}, random, workspace,
+               fit, slope);
   return slope;
 }
 

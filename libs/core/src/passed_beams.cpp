@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 
+#include "slots_around.h"
 #include "thing_pieces.h"
 
 namespace mrpt_terrain {
@@ -77,11 +78,6 @@ PassedBeams::PassedBeams(const ElevationGrid& grid, const FieldCells& cells,
       sensor_(sensor),
       cell_(static_cast<float>(grid.geometry.cell_size())) {}
 
-Slot PassedBeams::slot_at(double x, double y) const {
-  CellIndex cell;
-  return grid_.geometry.cell_at(x, y, cell) ? grid_.slot_at(cell) : kUnobserved;
-}
-
 bool PassedBeams::have_passed(const Position2& at, float ground, float top) const {
   const float dx = static_cast<float>(at.x) - sensor_[0];
   const float dy = static_cast<float>(at.y) - sensor_[1];
@@ -92,8 +88,8 @@ bool PassedBeams::have_passed(const Position2& at, float ground, float top) cons
     last = std::min(last, range * (top - ground) / (sensor_[2] - top) + kUneven);
   for (float d = cell_; d <= last; d += cell_) {
     const float share = (range + d) / range;
-    const Slot slot = slot_at(static_cast<double>(sensor_[0] + share * dx),
-                              static_cast<double>(sensor_[1] + share * dy));
+    const Slot slot = slot_at(grid_, {static_cast<double>(sensor_[0] + share * dx),
+                                      static_cast<double>(sensor_[1] + share * dy)});
     if (slot == kUnobserved) continue;
     const auto s = static_cast<std::size_t>(slot);
     const bool floor = cells_.on[s] + cells_.below[s] > 0;

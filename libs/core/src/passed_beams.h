@@ -27,8 +27,6 @@ class PassedBeams {
   [[nodiscard]] bool divide(std::size_t slot_a, std::size_t slot_b) const;
 
  private:
-  [[nodiscard]] Slot slot_at(double x, double y) const;
-
   const ElevationGrid& grid_;
   const FieldCells& cells_;
   const std::array<float, 3>& sensor_;

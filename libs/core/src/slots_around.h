@@ -8,6 +8,12 @@
 
 namespace mrpt_terrain {
 
+/// The slot of a place; kUnobserved outside of the grid, too.
+[[nodiscard]] inline Slot slot_at(const ElevationGrid& grid, const Position2& at) {
+  CellIndex cell;
+  return grid.geometry.cell_at(at.x, at.y, cell) ? grid.slot_at(cell) : kUnobserved;
+}
+
 /// Calls f with every observed slot up to `reach` cells away from a slot, itself included.
 template <class F>
 void for_slots_around(const ElevationGrid& grid, std::size_t slot, int reach, F&& f) {
