@@ -228,6 +228,44 @@ TEST(Decks, TheSideOfACurbIsAboveAndItsTopIsGround) {
   EXPECT_GT(top, 1000);
 }
 
+// A ring may meet no more of a side than its upper edge, which is as high as the surface.
+TEST(Decks, TheUpperEdgeOfASideIsAboveWhereverTheSideGoesOn) {
+  World world(level(1.0, 6.0, 0.2));
+  for (double y = -0.5; y < 0.5; y += 0.05) world.add(-0.5, y, 0.12, 0.0);
+  const std::size_t edge = world.points.size();
+  for (double y = -1.5; y < 1.5; y += 0.05) world.add(-0.5, y, 0.19, 0.0);
+  world.measure();
+  ASSERT_EQ(world.find(), 1U);
+  const std::vector<Support> support = world.labels();
+  EXPECT_EQ(std::count(support.begin() + static_cast<std::ptrdiff_t>(edge), support.end(),
+                       Support::kAbove),
+            static_cast<std::ptrdiff_t>(support.size() - edge));
+  // The first row of the top is 2.5 cm behind.
+  std::size_t top = 0, ground = 0;
+  for (std::size_t i = 0; i < edge; ++i) {
+    const PointsView view = world.points.view();
+    if (view.z[i] < 0.15F || view.x[i] < -0.46F) continue;
+    ++top;
+    ground += support[i] == Support::kGround ? 1U : 0U;
+  }
+  EXPECT_EQ(ground, top);
+  EXPECT_GT(top, 1000U);
+}
+
+// Below the threshold of labels by height, as rough ground may be.
+TEST(Decks, ALowPointOnTheLineOfASideIsAbove) {
+  World world(level(1.0, 6.0, 0.2));
+  for (double y = -0.5; y < 0.5; y += 0.05) world.add(-0.5, y, 0.12, 0.0);
+  const std::size_t on_line = world.points.size();
+  world.add(-0.5, 0.31, 0.08, 0.0);
+  world.add(-0.5, 0.31, 0.05, 0.0);
+  world.measure();
+  ASSERT_EQ(world.find(), 1U);
+  const std::vector<Support> support = world.labels();
+  EXPECT_EQ(support[on_line], Support::kAbove);
+  EXPECT_EQ(support[on_line + 1], Support::kGround);
+}
+
 TEST(Decks, WhatStandsOnADeckIsNoGround) {
   World world(level(4.0, 4.0, 0.4));
   const std::size_t tops = world.points.size();

@@ -28,8 +28,6 @@ constexpr float kHold = 0.002F;
 // Points of the side of a slope are this many times as far below its surface: where it bends, its
 // own points are below the plane.
 constexpr float kSlopeSide = 4.0F;
-// Points higher above the ground may be of a deck's side, metres.
-constexpr float kLeastSide = 0.03F;
 // Fewest cells with a plane that tell how even a deck is.
 constexpr std::size_t kFewestPlanes = 3;
 // A ramp rises by more than this over the ground, m/m.
@@ -371,38 +369,6 @@ void drop_loose_decks(const DeckSearch& search, const std::array<float, 3>& orig
     if (deck >= 0) deck = workspace.deck_number[static_cast<std::size_t>(deck)];
 }
 
-/// Where points of sides lie, in parts of cells.
-struct SideMap {
-  const ElevationGrid& grid;
-  std::vector<std::uint64_t>& parts;  ///< per slot: one bit for each of 8 x 8 parts
-
-  [[nodiscard]] int part_of(double position, double half, int cells) const {
-    const double place = (position + half) / grid.geometry.cell_size() * kParts;
-    return std::min(static_cast<int>(place), cells * kParts - 1);
-  }
-  [[nodiscard]] CellIndex part_at(double x, double y) const {
-    return {part_of(x, grid.geometry.half_length(), grid.geometry.cells_l()),
-            part_of(y, grid.geometry.half_width(), grid.geometry.cells_w())};
-  }
-  static std::uint64_t bit_of(CellIndex part) {
-    return std::uint64_t{1} << ((part.l % kParts) * kParts + part.w % kParts);
-  }
-  void mark(std::size_t slot, double x, double y) { parts[slot] |= bit_of(part_at(x, y)); }
-  [[nodiscard]] bool is_near(double x, double y, int reach) const {
-    const CellIndex at = part_at(x, y);
-    for (int l = std::max(at.l - reach, 0); l <= at.l + reach; ++l) {
-      for (int w = std::max(at.w - reach, 0); w <= at.w + reach; ++w) {
-        const Slot slot = grid.slot_at({l / kParts, w / kParts});
-        if (slot != kUnobserved && (parts[static_cast<std::size_t>(slot)] & bit_of({l, w})) != 0)
-          return true;
-      }
-    }
-    return false;
-  }
-
-  static constexpr int kParts = 8;
-};
-
 }  // namespace
 
 void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlots& point_slots,
@@ -442,32 +408,6 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
   // A moving sensor sees a deck from nearly the same place.
   drop_loose_decks(search, scan.origins.known() ? scan.origins.of(0) : kUnknownOrigin, found,
                    cells);
-}
-
-void label_deck_points(const PointsView& scan, const FieldPoints& points,
-                       const PointSlots& point_slots, const ElevationGrid& grid,
-                       const FieldCells& cells, const DeckParams& params, DeckWorkspace& workspace,
-                       std::vector<Support>& support) {
-  const auto side = static_cast<float>(params.side);
-  workspace.side.assign(grid.observed(), 0);
-  workspace.on_deck.clear();
-  SideMap sides{grid, workspace.side};
-  for (std::size_t i = 0; i < point_slots.size(); ++i) {
-    if (point_slots[i] < 0 || points.height[i] < kLeastSide) continue;
-    const auto slot = static_cast<std::size_t>(point_slots[i]);
-    if (cells.deck[slot] < 0) continue;
-    const DeckPlane& plane = cells.deck_plane[slot];
-    const float below = plane.at(scan.x[i], scan.y[i]) - scan.z[i];
-    if (below > plane.side) sides.mark(slot, scan.x[i], scan.y[i]);
-    if (std::abs(below) <= side && support[i] == Support::kAbove)
-      workspace.on_deck.push_back(static_cast<std::int32_t>(i));
-  }
-  const double part = grid.geometry.cell_size() / SideMap::kParts;
-  const int reach = std::clamp(static_cast<int>(params.side / part + 0.5), 1, SideMap::kParts);
-  for (const std::int32_t point : workspace.on_deck) {
-    const auto i = static_cast<std::size_t>(point);
-    if (!sides.is_near(scan.x[i], scan.y[i], reach)) support[i] = Support::kGround;
-  }
 }
 
 }  // namespace mrpt_terrain

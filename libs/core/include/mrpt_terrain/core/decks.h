@@ -81,6 +81,27 @@ struct DeckLayer {
   }
 };
 
+/// A point of the side of a deck, seen from above, metres.
+struct DeckSidePoint {
+  std::int32_t deck = -1;
+  float x = 0.0F, y = 0.0F;
+};
+
+/// An upright side of a deck, seen from above: a stretch of a line, metres.
+struct DeckSide {
+  std::int32_t deck = -1;
+  float x = 0.0F, y = 0.0F;              ///< its middle
+  float along_x = 1.0F, along_y = 0.0F;  ///< its direction, a unit vector
+  float half_length = 0.0F;
+
+  [[nodiscard]] float along(float px, float py) const {
+    return along_x * (px - x) + along_y * (py - y);
+  }
+  [[nodiscard]] float across(float px, float py) const {
+    return along_x * (py - y) - along_y * (px - x);
+  }
+};
+
 /// Scratch memory of `find_decks`.
 struct DeckWorkspace {
   CellBits candidate_cells;             ///< the cells of those slots that are `candidate`
@@ -94,8 +115,12 @@ struct DeckWorkspace {
   std::vector<HeightSums> remembered;   ///< the same, of remembered points; empty if there are none
   std::vector<std::pair<std::int32_t, float>> scatter;  ///< per cell of a deck: deck, scatter
   std::vector<std::int32_t> deck_number;                ///< per deck: number of those kept, or -1
-  std::vector<std::uint64_t> side;    ///< per slot: parts of the cell with points of a side
-  std::vector<std::int32_t> on_deck;  ///< points on a deck or near its edge
+  std::vector<std::uint64_t> side;      ///< per slot: parts of the cell with points of a side
+  std::vector<std::int32_t> on_deck;    ///< points on a deck or near its edge
+  std::vector<std::int32_t> low_side;   ///< points below a deck's surface that are ground so far
+  std::vector<std::int32_t> deck_cell;  ///< per slot: itself or the cell of a deck beside, or -1
+  std::vector<DeckSidePoint> side_points;
+  std::vector<DeckSide> sides;
 };
 
 /// Looks for raised surfaces that can be driven on: cells whose points above the ground are one
@@ -109,9 +134,11 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
                 const ElevationGrid& grid, const GroundSegmentation& ground,
                 const DeckParams& params, DeckWorkspace& workspace, FieldCells& cells);
 
-/// Makes the points on decks ground: those that lie on the surface or above it, but for those that
-/// have points of the deck's side, `side` below the surface, as near as that beside them.
-/// \param[in,out] support of the points, in the order of the scan
+/// Makes the points on decks ground: those that lie up to `side` below or above the surface, but
+/// for those of the deck's sides. These have points further below the surface as near as that
+/// beside them, or lie on the line of a side seen from above (deck_sides.h); points of the ground
+/// on such a line, well above its foot, are above. \param[in,out] support of the points, in the
+/// order of the scan
 void label_deck_points(const PointsView& scan, const FieldPoints& points,
                        const PointSlots& point_slots, const ElevationGrid& grid,
                        const FieldCells& cells, const DeckParams& params, DeckWorkspace& workspace,

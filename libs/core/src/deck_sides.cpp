@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "deck_sides.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mrpt_terrain/core/random.h"
+
+namespace mrpt_terrain {
+namespace {
+
+// Lines through two random points each that are tried for every side...
+constexpr int kHypotheses = 48;
+// ...so far apart, metres: nearer ones give no direction, farther ones are hardly of one side.
+constexpr float kNearest = 0.15F, kFarthest = 2.5F;
+// Sides have no longer gaps, metres: rings are apart where a side runs along the beams.
+constexpr float kGap = 1.0F;
+// Fewer points are no side, nor are shorter stretches, metres.
+constexpr std::size_t kFewest = 5;
+constexpr float kShortest = 0.2F;
+// A strip so many times as wide as the line has at least this share of its points on the line.
+constexpr float kStrip = 3.0F, kSharp = 0.6F;
+// A side goes on beyond its last points, metres, as far as the line is known: where two of its
+// standard deviations are the reach.
+constexpr float kLeastBeyond = 0.2F, kMostBeyond = 3.0F;
+constexpr float kDeviations = 2.0F;
+// No line is better known than as one of points that scatter by this, metres.
+constexpr float kLeastSigma = 0.005F;
+// So many sides of a deck are looked for.
+constexpr int kMostSides = 8;
+
+struct PointRange {
+  std::vector<DeckSidePoint>::iterator first, last;  // the last one is behind
+  [[nodiscard]] auto begin() const { return first; }
+  [[nodiscard]] auto end() const { return last; }
+  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(last - first); }
+};
+
+bool line_through(const DeckSidePoint& a, const DeckSidePoint& b, DeckSide& line) {
+  const float x = b.x - a.x, y = b.y - a.y, length = std::sqrt(x * x + y * y);
+  if (!(length >= kNearest && length <= kFarthest)) return false;
+  line = {a.deck, a.x, a.y, x / length, y / length, 0.0F};
+  return true;
+}
+
+std::size_t count_on(const DeckSide& line, PointRange points, float reach) {
+  std::size_t count = 0;
+  for (const DeckSidePoint& p : points) count += std::abs(line.across(p.x, p.y)) <= reach ? 1U : 0U;
+  return count;
+}
+
+// The best of random lines by the number of points on it (RANSAC, Fischler and Bolles 1981).
+bool find_line(PointRange points, float reach, RandomGenerator& random, DeckSide& best) {
+  std::size_t most = kFewest - 1;
+  const auto n = static_cast<std::uint32_t>(points.size());
+  for (int k = 0; k < kHypotheses; ++k) {
+    DeckSide line;
+    const DeckSidePoint& a = *(points.begin() + random.below(n));
+    const DeckSidePoint& b = *(points.begin() + random.below(n));
+    if (!line_through(a, b, line)) continue;
+    const std::size_t count = count_on(line, points, reach);
+    if (count <= most) continue;
+    most = count;
+    best = line;
+  }
+  return most >= kFewest;
+}
+
+// Brings the points on a line, along the stretch without gap that has most of them, to the front.
+PointRange take_stretch(const DeckSide& line, PointRange points, float reach) {
+  const auto off = std::partition(
+      points.begin(), points.end(),
+      [&line, reach](const DeckSidePoint& p) { return std::abs(line.across(p.x, p.y)) <= reach; });
+  std::sort(points.begin(), off, [&line](const DeckSidePoint& a, const DeckSidePoint& b) {
+    return line.along(a.x, a.y) < line.along(b.x, b.y);
+  });
+  const auto is_gap = [&line](const DeckSidePoint& a, const DeckSidePoint& b) {
+    return line.along(b.x, b.y) - line.along(a.x, a.y) > kGap;
+  };
+  PointRange best{points.begin(), points.begin()};
+  for (PointRange stretch = best; stretch.first != off; stretch.first = stretch.last) {
+    const auto gap = std::adjacent_find(stretch.first, off, is_gap);
+    stretch.last = gap == off ? off : gap + 1;
+    if (stretch.size() > best.size()) best = stretch;
+  }
+  const auto size = best.last - best.first;
+  std::rotate(points.begin(), best.first, best.last);
+  return {points.begin(), points.begin() + size};
+}
+
+// The line through points with the least sum of squared distances from it, about their middle.
+DeckSide fit_line(PointRange points) {
+  const DeckSidePoint& origin = *points.begin();
+  const auto n = static_cast<float>(points.size());
+  float x = 0.0F, y = 0.0F, xx = 0.0F, xy = 0.0F, yy = 0.0F;
+  for (const DeckSidePoint& p : points) {
+    const float u = p.x - origin.x, v = p.y - origin.y;
+    x += u;
+    y += v;
+    xx += u * u;
+    xy += u * v;
+    yy += v * v;
+  }
+  const float turn = 0.5F * std::atan2(2.0F * (xy - x * y / n), xx - x * x / n - (yy - y * y / n));
+  return {origin.deck, origin.x + x / n, origin.y + y / n, std::cos(turn), std::sin(turn), 0.0F};
+}
+
+/// How points lie along a fitted line, metres.
+struct Spread {
+  float low = 0.0F, high = 0.0F;  // along it
+  float known = 0.0F;             // how far from the middle on both sides the line is known
+};
+
+Spread spread_of(const DeckSide& line, PointRange points, float reach) {
+  Spread spread;
+  float across_squares = 0.0F, along_squares = 0.0F;
+  for (const DeckSidePoint& p : points) {
+    const float along = line.along(p.x, p.y), across = line.across(p.x, p.y);
+    spread.low = std::min(spread.low, along);
+    spread.high = std::max(spread.high, along);
+    along_squares += along * along;
+    across_squares += across * across;
+  }
+  // Its variance at a distance s from the middle is v (1 / n + s^2 / sum of squared s).
+  const auto n = static_cast<float>(points.size());
+  const float v = std::max(across_squares / (n - 2.0F), kLeastSigma * kLeastSigma);
+  const float sigma = reach / kDeviations;
+  spread.known = std::sqrt(along_squares * std::max(sigma * sigma / v - 1.0F / n, 0.0F));
+  return spread;
+}
+
+// Whether most of what lies in the strip along a side lies on its line.
+bool is_sharp(const DeckSide& side, PointRange points, float reach) {
+  std::size_t on = 0, strip = 0;
+  for (const DeckSidePoint& p : points) {
+    if (std::abs(side.along(p.x, p.y)) > side.half_length) continue;
+    const float across = std::abs(side.across(p.x, p.y));
+    on += across <= reach ? 1U : 0U;
+    strip += across <= kStrip * reach ? 1U : 0U;
+  }
+  return static_cast<float>(on) >= kSharp * static_cast<float>(strip);
+}
+
+// Makes a side of the points of a stretch, if it is one.
+bool settle_side(PointRange stretch, PointRange points, float reach, DeckSide& side) {
+  if (stretch.size() < kFewest) return false;
+  side = fit_line(stretch);
+  const Spread spread = spread_of(side, stretch, reach);
+  side.half_length = 0.5F * (spread.high - spread.low);
+  if (side.half_length < 0.5F * kShortest) return false;
+  const float middle = 0.5F * (spread.low + spread.high);
+  side.x += middle * side.along_x;
+  side.y += middle * side.along_y;
+  if (!is_sharp(side, points, reach)) return false;
+  side.half_length =
+      std::clamp(spread.known, side.half_length + kLeastBeyond, side.half_length + kMostBeyond);
+  return true;
+}
+
+void find_sides_of_deck(PointRange points, float reach, std::vector<DeckSide>& sides) {
+  RandomGenerator random(1);
+  for (int k = 0; k < kMostSides && points.size() >= kFewest; ++k) {
+    DeckSide side;
+    if (!find_line(points, reach, random, side)) return;
+    PointRange stretch = take_stretch(side, points, reach);
+    stretch = take_stretch(fit_line(stretch), points, reach);
+    if (settle_side(stretch, points, reach, side)) sides.push_back(side);
+    points.first = stretch.last;
+  }
+}
+
+}  // namespace
+
+void find_deck_sides(float reach, std::vector<DeckSidePoint>& points,
+                     std::vector<DeckSide>& sides) {
+  sides.clear();
+  std::stable_sort(points.begin(), points.end(),
+                   [](const DeckSidePoint& a, const DeckSidePoint& b) { return a.deck < b.deck; });
+  for (PointRange of_deck{points.begin(), points.begin()}; of_deck.first != points.end();
+       of_deck.first = of_deck.last) {
+    const std::int32_t deck = of_deck.first->deck;
+    of_deck.last = std::find_if(of_deck.first, points.end(),
+                                [deck](const DeckSidePoint& p) { return p.deck != deck; });
+    find_sides_of_deck(of_deck, reach, sides);
+  }
+}
+
+bool is_on_side(const std::vector<DeckSide>& sides, std::int32_t deck, float x, float y,
+                float reach) {
+  const auto first = std::lower_bound(
+      sides.begin(), sides.end(), deck,
+      [](const DeckSide& side, std::int32_t number) { return side.deck < number; });
+  for (auto side = first; side != sides.end() && side->deck == deck; ++side) {
+    if (std::abs(side->along(x, y)) <= side->half_length && std::abs(side->across(x, y)) <= reach)
+      return true;
+  }
+  return false;
+}
+
+}  // namespace mrpt_terrain

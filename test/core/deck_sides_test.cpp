@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "deck_sides.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "mrpt_terrain/core/random.h"
+
+namespace mrpt_terrain {
+namespace {
+
+constexpr float kReach = 0.025F;
+
+/// Points of sides, and what is found in them.
+struct Sides {
+  std::vector<DeckSidePoint> points;
+  std::vector<DeckSide> found;
+  RandomGenerator random{3};
+
+  /// `count` points evenly from (x0, y0) to (x1, y1), up to `off` metres to both sides.
+  void add(std::int32_t deck, double x0, double y0, double x1, double y1, int count,
+           double off = 0.0) {
+    const double length = std::hypot(x1 - x0, y1 - y0);
+    for (int k = 0; k < count; ++k) {
+      const double t = (k + 0.5) / count, e = off * (2.0 * random.uniform() - 1.0);
+      points.push_back({deck, static_cast<float>(x0 + t * (x1 - x0) - e * (y1 - y0) / length),
+                        static_cast<float>(y0 + t * (y1 - y0) + e * (x1 - x0) / length)});
+    }
+  }
+  void find() { find_deck_sides(kReach, points, found); }
+  [[nodiscard]] bool on(std::int32_t deck, double x, double y) const {
+    return is_on_side(found, deck, static_cast<float>(x), static_cast<float>(y), kReach);
+  }
+};
+
+TEST(DeckSides, TheLineOfASideIsFound) {
+  Sides sides;
+  sides.add(0, -1.0, 0.7, 1.0, 1.3, 60, 0.02);
+  sides.find();
+  ASSERT_EQ(sides.found.size(), 1U);
+  const DeckSide& side = sides.found[0];
+  EXPECT_NEAR(std::atan2(side.along_y, side.along_x) * (side.along_x < 0.0F ? -1.0 : 1.0),
+              std::atan2(0.6, 2.0), 0.01);
+  EXPECT_NEAR(side.across(0.0F, 1.0F), 0.0F, 0.005F);
+  EXPECT_TRUE(sides.on(0, 0.5, 1.15));
+  EXPECT_FALSE(sides.on(0, 0.5, 1.20));
+  EXPECT_FALSE(sides.on(0, 0.5, 1.10));
+}
+
+TEST(DeckSides, ASideGoesOnAsFarAsItsLineIsKnown) {
+  Sides well, badly;
+  well.add(0, 0.0, 0.0, 2.0, 0.0, 100, 0.01);
+  badly.add(0, 0.0, 0.0, 0.5, 0.0, 8, 0.02);
+  well.find();
+  badly.find();
+  ASSERT_EQ(well.found.size(), 1U);
+  ASSERT_EQ(badly.found.size(), 1U);
+  EXPECT_TRUE(well.on(0, 4.9, 0.0));
+  EXPECT_FALSE(well.on(0, 5.1, 0.0));
+  EXPECT_LT(badly.found[0].half_length, 0.25F + 0.4F);
+}
+
+TEST(DeckSides, OneBehindAGapIsAnother) {
+  Sides sides;
+  sides.add(0, 0.0, 0.0, 1.0, 0.0, 20);
+  sides.add(0, 9.0, 0.0, 10.0, 0.0, 20);
+  sides.find();
+  ASSERT_EQ(sides.found.size(), 2U);
+  EXPECT_TRUE(sides.on(0, 0.5, 0.0));
+  EXPECT_TRUE(sides.on(0, 9.5, 0.0));
+  EXPECT_FALSE(sides.on(0, 5.0, 0.0));
+}
+
+TEST(DeckSides, ACornerHasTwo) {
+  Sides sides;
+  sides.add(0, 0.0, 0.0, 1.5, 0.0, 40, 0.01);
+  sides.add(0, 0.0, 0.0, 0.0, 1.5, 40, 0.01);
+  sides.find();
+  EXPECT_EQ(sides.found.size(), 2U);
+  EXPECT_TRUE(sides.on(0, 1.0, 0.0));
+  EXPECT_TRUE(sides.on(0, 0.0, 1.0));
+  EXPECT_FALSE(sides.on(0, 0.3, 0.3));
+}
+
+TEST(DeckSides, EachDeckHasItsOwn) {
+  Sides sides;
+  sides.add(7, 0.0, 3.0, 1.0, 3.0, 20);
+  sides.add(2, 0.0, 0.0, 1.0, 0.0, 20);
+  sides.add(5, 0.0, 5.0, 0.1, 5.0, 20);  // too short
+  sides.find();
+  ASSERT_EQ(sides.found.size(), 2U);
+  EXPECT_TRUE(sides.on(2, 0.5, 0.0));
+  EXPECT_TRUE(sides.on(7, 0.5, 3.0));
+  EXPECT_FALSE(sides.on(7, 0.5, 0.0));
+  EXPECT_FALSE(sides.on(5, 0.05, 5.0));
+}
+
+TEST(DeckSides, ScatteredPointsAreNone) {
+  Sides sides;
+  for (int k = 0; k < 300; ++k) {
+    const double x = sides.random.uniform(), y = sides.random.uniform();
+    sides.points.push_back({0, static_cast<float>(x), static_cast<float>(y)});
+  }
+  sides.find();
+  EXPECT_TRUE(sides.found.empty());
+}
+
+TEST(DeckSides, FewPointsAreNone) {
+  Sides sides;
+  sides.add(0, 0.0, 0.0, 1.0, 0.0, 4);
+  sides.find();
+  EXPECT_TRUE(sides.found.empty());
+  sides.points.clear();
+  sides.find();
+  EXPECT_TRUE(sides.found.empty());
+}
+
+}  // namespace
+}  // namespace mrpt_terrain
