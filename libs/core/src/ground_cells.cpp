@@ -18,6 +18,11 @@ constexpr float kHighPart = 2.0F;
 constexpr float kHighPointWeight = 3.0F;
 // Mean weight of the cells around, where what is rough is the ground, and where it stands on it.
 constexpr float kRoughAround = 0.2F, kSmoothAround = 0.4F;
+// Among smooth cells, one that is less firm than this is loose: it scatters by 3.6 cm along the
+// beams, which is more than range noise.
+constexpr float kLoose = 0.6F;
+// Rise of what is not loose, metres: the level's own tolerance has the say.
+constexpr float kAnyRise = 1e9F;
 // Beams that meet the ground at a flatter angle count as if it were this sine: errors of a cell's
 // mean plane would have the say.
 constexpr float kLeastSine = 0.02F;
@@ -186,7 +191,8 @@ void smooth_shares(int side, GroundSurfaceWorkspace& workspace) {
 }
 
 // Rough cells between smooth ones are things that stand there; where all cells are rough, they are
-// the ground. Among smooth ones, scatter along the beams is roughness too.
+// the ground. Among smooth ones, scatter along the beams is roughness too, and what has it is grass
+// that stands on the ground, or no higher than gravel.
 void weigh_against_surroundings(const GroundSurfaceParams& params, Levels levels,
                                 GroundSurfaceWorkspace& workspace, GroundSurface& surface) {
   constexpr float kLeast = 0.001F;  // keeps cells of no weight from dividing by zero
@@ -202,6 +208,7 @@ void weigh_against_surroundings(const GroundSurfaceParams& params, Levels levels
   }
   smooth_shares(side, workspace);
   const auto rough = static_cast<float>(params.rough_weight);
+  const auto loose_rise = static_cast<float>(params.loose_rise);
   for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
     GroundCell& ground = surface.ground[slot];
     const float around = workspace.share[coarse_cell(lattice, surface.cells.cell[slot])];
@@ -209,6 +216,8 @@ void weigh_against_surroundings(const GroundSurfaceParams& params, Levels levels
         std::clamp((around - kRoughAround) / (kSmoothAround - kRoughAround), 0.0F, 1.0F);
     const float even = workspace.even[slot];
     ground.smooth = even + among_smooth * (workspace.firm[slot] - even);
+    const bool loose = among_smooth > 0.5F && ground.smooth < kLoose;
+    ground.most_rise = loose ? loose_rise : kAnyRise;
     // Coarse levels bridge what is loose; on the fine ones it is out of their tolerance.
     const float smooth = levels == Levels::kCoarse ? ground.smooth : even;
     const float weight = squared(workspace.part[slot]) * smooth;

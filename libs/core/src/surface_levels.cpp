@@ -108,13 +108,14 @@ void weigh_differences(const LevelRule rule, const HeardCells& heard, const floa
   const float* points = heard.points.data();
   const float* smooth = heard.smooth.data();
   const float* own = heard.weight.data();
+  const float* most_rise = heard.most_rise.data();
   const float* tall = heard.doubtful.data();
   for (std::size_t slot = 0; slot < n; ++slot) {
     const float d = difference[slot], w = own[slot];
     // What rises and is smooth is a hill, what rises and is rough may be a bush.
     const float hill = rule.rough + (1.0F - rule.rough) * smooth[slot];
     const float rise = tall[slot] > 0.0F ? rule.beside_tall : hill;
-    const float above = rule.tolerance + rule.bend * rise;
+    const float above = std::min(rule.tolerance + rule.bend * rise, most_rise[slot]);
     const float high = tall[slot] > 0.0F ? w * rule.weight_beside_tall : w;
     const float low = rule.low_weight * (w < kLeastBelow ? kLeastBelow : w);
     const float low_or_high = points[slot] >= rule.fewest_low ? low : high;
@@ -229,8 +230,8 @@ void apply_differences(float hold, std::int32_t side, GroundSurfaceWorkspace& wo
 void hear_cells(const GroundSurface& surface, int level, GroundSurfaceWorkspace& workspace) {
   const std::size_t n = surface.ground.size();
   HeardCells& heard = workspace.heard;
-  for (auto* values : {&heard.low, &heard.points, &heard.smooth, &heard.weight, &heard.doubtful,
-                       &workspace.difference, &workspace.weight})
+  for (auto* values : {&heard.low, &heard.points, &heard.smooth, &heard.weight, &heard.most_rise,
+                       &heard.doubtful, &workspace.difference, &workspace.weight})
     values->resize(n);
   workspace.touched.resize(n + 1);
   for (std::size_t slot = 0; slot < n; ++slot) {
@@ -239,6 +240,7 @@ void hear_cells(const GroundSurface& surface, int level, GroundSurfaceWorkspace&
     heard.points[slot] = ground.points;
     heard.smooth[slot] = ground.smooth;
     heard.weight[slot] = ground.weight;
+    heard.most_rise[slot] = ground.most_rise;
     heard.doubtful[slot] = level >= kCoarseLevel && workspace.beside_tall[slot] != 0 ? 1.0F : 0.0F;
   }
 }

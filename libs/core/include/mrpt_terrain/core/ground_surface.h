@@ -34,6 +34,7 @@ struct GroundSurfaceParams {
   double firm_sigma = 0.005;    ///< the same among smooth ones, of surfaces that beams graze...
   double beam_sigma = 0.04;     ///< ...and of noise along the beams: what they enter has more
   double rough_weight = 0.8;    ///< how little rough cells count between smooth ones
+  double loose_rise = 0.08;     ///< what scatters along beams, among what does not, rises by less
   double hold = 1.0;            ///< weight of the coarser level, in cells
 
   template <class Self, class Visitor>
@@ -71,6 +72,9 @@ struct GroundSurfaceParams {
     visit(self.rough_weight,
           ParamInfo{"rough_weight", "", "", 0.0, 100.0,
                     "how little rough cells count between smooth ones; 0: as much as smooth ones"});
+    visit(self.loose_rise, ParamInfo{"loose_rise", "", "m", 0.0, 10.0,
+                                     "what is loose between firm cells, and higher above the "
+                                     "coarser level than this, stands on the ground"});
     visit(self.hold, ParamInfo{"hold", "", "", 0.001, 100.0,
                                "weight of the coarser level in the mean, in cells"});
   }
@@ -78,10 +82,11 @@ struct GroundSurfaceParams {
 
 /// What the points of an occupied cell say of the ground in it. Metres, frame of the scan.
 struct GroundCell {
-  float low = 0.0F;     ///< mean height of the points of its low band
-  float points = 0.0F;  ///< how many they are
-  float smooth = 0.0F;  ///< 0 to 1: of roughness, and among smooth cells of scatter along beams
-  float weight = 0.0F;  ///< of `low` in the reference, 0 to 1
+  float low = 0.0F;        ///< mean height of the points of its low band
+  float points = 0.0F;     ///< how many they are
+  float smooth = 0.0F;     ///< 0 to 1: of roughness, and among smooth cells of scatter along beams
+  float weight = 0.0F;     ///< of `low` in the reference, 0 to 1
+  float most_rise = 0.0F;  ///< it lifts no level on which it is more than this above
 };
 
 /// The ground as a height over x and y. Frame of the scan, metres.
@@ -123,6 +128,7 @@ struct ColumnRange {
 /// What the cells say of the ground, as a level hears it; entries per slot as in `GroundCell`.
 struct HeardCells {
   std::vector<float> low, points, smooth, weight;
+  std::vector<float> most_rise;
   std::vector<float> doubtful;  ///< 1 beside something tall, where the level minds
 };
 
