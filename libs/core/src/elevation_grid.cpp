@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "prefetch.h"
 #include "wide_registers.h"
 
 namespace mrpt_terrain {
@@ -98,16 +99,6 @@ void replace_cells_by_slots(const Slot* slot_of, PointSlots& point_slots) {
 // Fetching a cell's sums this many points ahead hides most of the way to the outer caches.
 constexpr std::size_t kPrefetchAhead = 12;
 
-void prefetch(const MomentSums& sums) {
-#if defined(__GNUC__)
-  const char* bytes = reinterpret_cast<const char*>(&sums);
-  __builtin_prefetch(bytes, 1);
-  __builtin_prefetch(bytes + sizeof(MomentSums) - 1, 1);
-#else
-  (void)sums;
-#endif
-}
-
 void accumulate(const PointsView points, const PointSlots& point_slots, ElevationGrid& grid) {
   const std::int32_t* slots = point_slots.data();
   MomentSums* sums = grid.sums.data();
@@ -115,7 +106,7 @@ void accumulate(const PointsView points, const PointSlots& point_slots, Elevatio
   float* h_max = grid.h_max.data();
   for (std::size_t i = 0; i < points.size; ++i) {
     if (i + kPrefetchAhead < points.size && slots[i + kPrefetchAhead] >= 0) {
-      prefetch(sums[slots[i + kPrefetchAhead]]);
+      prefetch_for_writing(sums[slots[i + kPrefetchAhead]]);
     }
     const std::int32_t slot = slots[i];
     if (slot < 0) continue;
