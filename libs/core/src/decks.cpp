@@ -169,7 +169,7 @@ bool fit_surface(const DeckSearch& search, const std::vector<DeckLayer>& layers,
       heights.add(layer.x - at.x, layer.y - at.y, layer.z - at.z);
       above.add(layer.x - at.x, layer.y - at.y, layer.above - at.above);
     });
-    if (heights.n < kFewestLayers) break;
+    if (heights.n() < kFewestLayers) break;
     const SumsPlane through = fit_plane(heights, kHold);
     const SumsPlane over_ground = fit_plane(above, kHold);
     plane = {at.x, at.y, at.z + through.at_centre(), through.gradient_x, through.gradient_y, 0.0F};
@@ -304,7 +304,7 @@ HeightSums sums_around(const DeckSearch& search, const std::vector<HeightSums>& 
 float scatter_at(const DeckSearch& search, const std::array<float, 3>& origin, std::size_t slot) {
   const DeckPlane& at = search.cells.deck_plane[slot];
   const HeightSums sums = sums_around(search, search.workspace.sums, slot);
-  if (sums.n < kFewestPoints) return -1.0F;
+  if (sums.n() < kFewestPoints) return -1.0F;
   const SumsPlane plane = fit_plane(sums, kHold);
   const float x = at.x + plane.mean_x - origin[0];
   const float y = at.y + plane.mean_y - origin[1];
@@ -322,7 +322,7 @@ float scatter_at(const DeckSearch& search, const std::array<float, 3>& origin, s
 // The same for remembered points, of which it is not known from where they were seen.
 float remembered_scatter_at(const DeckSearch& search, std::size_t slot) {
   const HeightSums sums = sums_around(search, search.workspace.remembered, slot);
-  if (sums.n < kFewestPoints) return -1.0F;
+  if (sums.n() < kFewestPoints) return -1.0F;
   const SumsPlane plane = fit_plane(sums, kHold);
   const float length =
       std::sqrt(1.0F + plane.gradient_x * plane.gradient_x + plane.gradient_y * plane.gradient_y);

@@ -99,9 +99,9 @@ LowBand measure_above(const PointsOfCell& cell, const LevelView::Linear& referen
 // Variance across the plane of the points, by one over the trace of the inverse covariance: it is
 // at most the smallest eigenvalue and at least a third of it, and needs no eigenvalues.
 float variance_across(const HeightSums& s) {
-  const float x = s.x / s.n, y = s.y / s.n, z = s.z / s.n;
-  const float a = s.xx / s.n - x * x, b = s.xy / s.n - x * y, c = s.yy / s.n - y * y;
-  const float d = s.xz / s.n - x * z, e = s.yz / s.n - y * z, f = s.zz / s.n - z * z;
+  const HeightMoments m(s);
+  const float a = m.variances[0], c = m.variances[1], f = m.variances[2];
+  const float b = m.covariances[0], d = m.covariances[1], e = m.covariances[2];
   const float ac = a * c - b * b, af = a * f - d * d, cf = c * f - e * e;
   const float determinant = f * ac - d * (d * c - b * e) + e * (d * b - a * e);
   const float minors = ac + af + cf;
@@ -111,7 +111,7 @@ float variance_across(const HeightSums& s) {
 // Points of the nine cells about a slot, heights from its own mean.
 HeightSums sums_around(const CellPoints& cells, const std::vector<HeightSums>& sums,
                        std::size_t slot) {
-  const float z = sums[slot].z / sums[slot].n;
+  const float z = sums[slot].sum[2] / sums[slot].n();
   const float size = cells.lattice.cell_size;
   HeightSums around;
   for_nine_cells(cells, slot, [&](std::int32_t row, std::int32_t column, std::size_t other) {
