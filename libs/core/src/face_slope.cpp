@@ -161,7 +161,7 @@ Moments find_face(const BeamPlaneFit& fit, FaceSlopeWorkspace& workspace) {
     beam.point = static_cast<std::int32_t>(i);
     workspace.beams.push_back(beam);
   }
-  sort_beams(workspace.beams);
+  sort_beams(workspace);
   return moments_from(sums);
 }
 

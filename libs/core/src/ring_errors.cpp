@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace mrpt_terrain {
 namespace {
@@ -239,12 +240,37 @@ struct GroundFit {
 
 }  // namespace
 
-void sort_beams(std::vector<FaceBeam>& beams) {
-  std::sort(beams.begin(), beams.end(), [](const FaceBeam& a, const FaceBeam& b) {
-    if (a.column != b.column) return a.column < b.column;
-    if (a.elevation != b.elevation) return a.elevation < b.elevation;
-    return a.ground != b.ground ? b.ground : a.point < b.point;
-  });
+// By counting columns, as these are few, and then within each column.
+void sort_beams(FaceSlopeWorkspace& workspace) {
+  const std::vector<FaceBeam>& beams = workspace.beams;
+  if (beams.empty()) return;
+  std::int32_t low = beams.front().column, high = low;
+  for (const FaceBeam& beam : beams) {
+    low = std::min(low, beam.column);
+    high = std::max(high, beam.column);
+  }
+  std::vector<std::int32_t>& next = workspace.first_beam;
+  next.assign(static_cast<std::size_t>(high - low) + 2, 0);
+  for (const FaceBeam& beam : beams) ++next[static_cast<std::size_t>(beam.column - low) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<FaceBeam>& sorted = workspace.beams_by_column;
+  sorted.resize(beams.size());
+  for (const FaceBeam& beam : beams) {
+    std::int32_t& place = next[static_cast<std::size_t>(beam.column - low)];
+    sorted[static_cast<std::size_t>(place++)] = beam;
+  }
+  // The place behind the last beam of each column is left.
+  std::ptrdiff_t first = 0;
+  for (std::size_t column = 0; column + 1 < next.size(); ++column) {
+    const std::ptrdiff_t last = next[column];
+    std::sort(sorted.begin() + first, sorted.begin() + last,
+              [](const FaceBeam& a, const FaceBeam& b) {
+                if (a.elevation != b.elevation) return a.elevation < b.elevation;
+                return a.ground != b.ground ? b.ground : a.point < b.point;
+              });
+    first = last;
+  }
+  workspace.beams.swap(sorted);
 }
 
 void add_beams_beside(const BeamOrigins& origins, const FaceSurroundings& around,
@@ -268,7 +294,7 @@ void add_beams_beside(const BeamOrigins& origins, const FaceSurroundings& around
     beam.ground = true;
     workspace.beams.push_back(beam);
   });
-  sort_beams(workspace.beams);
+  sort_beams(workspace);
 }
 
 void follow_beams(std::vector<FaceBeam>& beams, std::vector<FaceRing>& rings) {
