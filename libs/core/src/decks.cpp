@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "length_of.h"
 #include "mrpt_terrain/core/beam_slope.h"
 
 namespace mrpt_terrain {
@@ -63,7 +64,7 @@ struct DeckSearch {
 
   [[nodiscard]] const DeckLayer& top(std::size_t slot) const { return workspace.top[slot]; }
   [[nodiscard]] bool connected(std::size_t a, std::size_t b) const {
-    const float distance = std::hypot(top(a).x - top(b).x, top(a).y - top(b).y);
+    const float distance = length_of(top(a).x - top(b).x, top(a).y - top(b).y);
     return std::abs(top(a).above - top(b).above) <= kSlack + rise * distance;
   }
   /// Calls `visit` with every observed cell up to `reach` cells away along each axis, and itself.
@@ -173,7 +174,7 @@ bool fit_surface(const DeckSearch& search, const std::vector<DeckLayer>& layers,
     const SumsPlane through = fit_plane(heights, kHold);
     const SumsPlane over_ground = fit_plane(above, kHold);
     plane = {at.x, at.y, at.z + through.at_centre(), through.gradient_x, through.gradient_y, 0.0F};
-    fit = {std::sqrt(through.variance), std::hypot(over_ground.gradient_x, over_ground.gradient_y)};
+    fit = {std::sqrt(through.variance), length_of(over_ground.gradient_x, over_ground.gradient_y)};
     found = true;
   }
   return found;
@@ -253,7 +254,7 @@ bool is_even(const DeckSearch& search, DeckKind kind) {
 float side_of(const DeckSearch& search, DeckKind kind, std::size_t slot, const DeckPlane& plane) {
   const auto side = static_cast<float>(search.params.side);
   const auto diagonal = static_cast<float>(1.414 * search.grid.geometry.cell_size());
-  const float rise = diagonal * std::hypot(plane.gradient_x, plane.gradient_y);
+  const float rise = diagonal * length_of(plane.gradient_x, plane.gradient_y);
   const bool upright = search.cells.high[slot] - search.cells.low[slot] > rise + 2.0F * side;
   return kind == DeckKind::kLevel || upright ? side : kSlopeSide * side;
 }

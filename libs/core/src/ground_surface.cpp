@@ -6,6 +6,7 @@
 
 #include "ditch_cells.h"
 #include "ground_cells.h"
+#include "length_of.h"
 #include "mrpt_terrain/core/random.h"
 #include "surface_levels.h"
 #include "tall_things.h"
@@ -103,7 +104,7 @@ bool plane_through(const GroundSurfaceWorkspace& workspace, std::size_t i, std::
 
 bool is_permitted(const GroundHypothesis& plane, const GroundSurfaceParams& params) {
   const double steepest = std::tan(params.max_tilt);
-  const double gradient = std::hypot(plane.gradient_x, plane.gradient_y);
+  const double gradient = length_of(plane.gradient_x, plane.gradient_y);
   return gradient <= steepest && std::abs(plane.offset) <= params.max_offset;
 }
 
@@ -117,8 +118,8 @@ void find_plane(const GroundSurfaceParams& params, GroundSurfaceWorkspace& works
   if (n < 3) return;
   workspace.mixed.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    workspace.mixed[i] = kPlaneTolerance + kPlaneGrowth * std::hypot(workspace.candidate_x[i],
-                                                                     workspace.candidate_y[i]);
+    workspace.mixed[i] = kPlaneTolerance + kPlaneGrowth * length_of(workspace.candidate_x[i],
+                                                                    workspace.candidate_y[i]);
   }
   const auto score = [&workspace, n](const GroundHypothesis& plane) {
     return score_of(plane, workspace.candidate_x.data(), workspace.candidate_y.data(),

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdlib>
 
+#include "length_of.h"
 #include "slots_around.h"
 #include "thing_pieces.h"
 
@@ -94,7 +95,7 @@ PassedBeams::PassedBeams(const ElevationGrid& grid, const FieldCells& cells,
 bool PassedBeams::have_passed(const Position2& at, float ground, float top) const {
   const float dx = static_cast<float>(at.x) - sensor_[0];
   const float dy = static_cast<float>(at.y) - sensor_[1];
-  const float range = std::hypot(dx, dy);
+  const float range = length_of(dx, dy);
   if (range < cell_) return false;
   float last = kBehind;
   if (sensor_[2] > top)
