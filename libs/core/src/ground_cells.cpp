@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 
 #include "nine_cells.h"
@@ -65,17 +66,27 @@ struct BandCounts {
   }
 };
 
+// (x, y, z, 1).
+FourFloats place_of(const CellPoint& point) {
+  static_assert(sizeof(CellPoint) == sizeof(FourFloats));
+  FourFloats place;
+  std::memcpy(&place, &point, sizeof(place));
+  place[3] = 1.0F;
+  return place;
+}
+
 // The low band of a cell, and the sums of its points up to `low_part` above the lowest.
 LowBand measure_points(const PointsOfCell& cell, float band, float low_part, HeightSums& sums) {
   float lowest = std::numeric_limits<float>::max();
   for (const CellPoint* p = cell.first; p != cell.last; ++p) lowest = std::min(lowest, p->z);
   BandCounts counts{band};
   sums = {};
+  const FourFloats centre{cell.centre_x, cell.centre_y, 0.0F, 0.0F};
   const float top = lowest + low_part;
   for (const CellPoint* p = cell.first; p != cell.last; ++p) {
     counts.add(p->z - lowest);
     const float counted = p->z <= top ? 1.0F : 0.0F;
-    sums.add_weighted(p->x - cell.centre_x, p->y - cell.centre_y, p->z, counted);
+    sums.add_weighted(place_of(*p) - centre, counted);
   }
   return counts.over(lowest);
 }

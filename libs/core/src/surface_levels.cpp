@@ -18,10 +18,7 @@ constexpr int kFineLevel = 2;
 // Weight of a height below the reference is at least this share of that of a perfect cell: what is
 // low limits the ground, however rough it is.
 constexpr float kLeastBelow = 0.1F;
-// From this level on, of 3.2 m, all that is near a place may be one ring on a bush. Cells beside
-// something tall lift these levels by less than rough ground may, and count for less where they
-// do. If they are ground after all, finer levels follow it.
-constexpr int kCoarseLevel = 3;
+// Of cells beside something tall, on levels from `kCoarseLevel` on.
 constexpr float kBesideTallBend = 0.75F;  // of `rough_bend`
 constexpr float kBesideTallWeight = 0.2F;
 
@@ -225,7 +222,14 @@ void apply_differences(float hold, std::int32_t side, GroundSurfaceWorkspace& wo
   clear_frame(side, weight);
 }
 
-// What the cells say of the ground, as vectors of numbers.
+}  // namespace
+
+LevelView view_of_level(const GroundSurfaceWorkspace& workspace, const SquareLattice& lattice,
+                        int level) {
+  return {workspace.level[static_cast<std::size_t>(level)].data(), side_of(lattice, level),
+          lattice.cell_size * static_cast<float>(1 << level)};
+}
+
 void hear_cells(const GroundSurface& surface, int level, GroundSurfaceWorkspace& workspace) {
   const std::size_t n = surface.ground.size();
   HeardCells& heard = workspace.heard;
@@ -241,14 +245,6 @@ void hear_cells(const GroundSurface& surface, int level, GroundSurfaceWorkspace&
     heard.weight[slot] = ground.weight;
     heard.doubtful[slot] = level >= kCoarseLevel && workspace.beside_tall[slot] != 0 ? 1.0F : 0.0F;
   }
-}
-
-}  // namespace
-
-LevelView view_of_level(const GroundSurfaceWorkspace& workspace, const SquareLattice& lattice,
-                        int level) {
-  return {workspace.level[static_cast<std::size_t>(level)].data(), side_of(lattice, level),
-          lattice.cell_size * static_cast<float>(1 << level)};
 }
 
 void start_levels(const GroundSurface& surface, GroundSurfaceWorkspace& workspace) {
@@ -283,7 +279,6 @@ void correct_level(const GroundSurfaceParams& params, int level, GroundSurfaceWo
   workspace.step.resize(static_cast<std::size_t>(surface.lattice().side));
   for (std::int32_t index = 0; index < surface.lattice().side; ++index)
     workspace.step[static_cast<std::size_t>(index)] = view.step_of(index, level);
-  hear_cells(surface, level, workspace);
   for (int pass = 0; pass < corrections(level); ++pass) {
     measure_differences(surface, view, level, workspace);
     weigh_differences(LevelRule(params, level, view.cell_size), workspace.heard,

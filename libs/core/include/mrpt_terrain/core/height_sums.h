@@ -10,10 +10,10 @@ typedef float FourFloats __attribute__((vector_size(4 * sizeof(float))));
 
 /// Of (x, y, z, ...): the first factors of the products xy, xz and yz, and the second ones.
 [[nodiscard]] inline FourFloats first_factors(const FourFloats& v) {
-  return FourFloats{v[0], v[2], v[2], 0.0F};
+  return FourFloats{v[0], v[2], v[2], v[3]};
 }
 [[nodiscard]] inline FourFloats second_factors(const FourFloats& v) {
-  return FourFloats{v[1], v[0], v[1], 0.0F};
+  return FourFloats{v[1], v[0], v[1], v[3]};
 }
 
 /// Sums of points about some centre, in single precision: for small neighbourhoods, where centre
@@ -25,11 +25,10 @@ struct HeightSums {
 
   [[nodiscard]] float n() const { return sum[3]; }
 
-  void add(float px, float py, float pz) { add_weighted(px, py, pz, 1.0F); }
+  void add(float px, float py, float pz) { add_weighted(FourFloats{px, py, pz, 1.0F}, 1.0F); }
 
-  /// Adds a point that counts `weight` times.
-  void add_weighted(float px, float py, float pz, float weight) {
-    const FourFloats p{px, py, pz, 1.0F};
+  /// Adds a point, (x, y, z, 1), that counts `weight` times.
+  void add_weighted(const FourFloats& p, float weight) {
     const FourFloats weighted = weight * p;
     sum += weighted;
     squares += weighted * p;
