@@ -103,10 +103,12 @@ void choose_candidates(const ElevationGrid& grid, const GroundSegmentation& grou
 void measure_layers(const PointsView& scan, const FieldPoints& points,
                     const PointSlots& point_slots, const FieldCells& cells,
                     DeckWorkspace& workspace) {
+  workspace.points.clear();
   for (std::size_t i = 0; i < point_slots.size(); ++i) {
     if (point_slots[i] < 0 || points.support[i] != Support::kAbove) continue;
     const auto slot = static_cast<std::size_t>(point_slots[i]);
     if (workspace.candidate[slot] == 0) continue;
+    workspace.points.push_back(static_cast<std::int32_t>(i));
     const float height = points.height[i];
     workspace.all[slot].add(scan.x[i], scan.y[i], scan.z[i], height);
     if (height >= cells.high[slot] - kTopLayer)
@@ -260,8 +262,7 @@ float side_of(const DeckSearch& search, DeckKind kind, std::size_t slot, const D
 }
 
 // Sums of the points on the surfaces of the decks, about the middles of the cells' tops.
-void sum_surface_points(const PointsView& scan, const FieldPoints& points,
-                        const PointSlots& point_slots, std::size_t measured,
+void sum_surface_points(const PointsView& scan, const PointSlots& point_slots, std::size_t measured,
                         const FieldCells& cells, const DeckParams& params,
                         DeckWorkspace& workspace) {
   const auto side = static_cast<float>(params.side);
@@ -273,8 +274,8 @@ void sum_surface_points(const PointsView& scan, const FieldPoints& points,
     workspace.sums[slot] = {};
     if (!workspace.remembered.empty()) workspace.remembered[slot] = {};
   }
-  for (std::size_t i = 0; i < point_slots.size(); ++i) {
-    if (point_slots[i] < 0 || points.support[i] != Support::kAbove) continue;
+  for (const std::int32_t point : workspace.points) {
+    const auto i = static_cast<std::size_t>(point);
     const auto slot = static_cast<std::size_t>(point_slots[i]);
     if (cells.deck[slot] < 0) continue;
     const DeckPlane& plane = cells.deck_plane[slot];
@@ -438,8 +439,7 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
     }
     mark_members(search, false);
   }
-  sum_surface_points(scan.points, points, point_slots, scan.origins.measured, cells, params,
-                     workspace);
+  sum_surface_points(scan.points, point_slots, scan.origins.measured, cells, params, workspace);
   // A moving sensor sees a deck from nearly the same place.
   drop_loose_decks(search, scan.origins.known() ? scan.origins.of(0) : kUnknownOrigin, found,
                    cells);
