@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lanes.h"
 #include "wide_registers.h"
 
 namespace mrpt_terrain {
@@ -19,22 +20,23 @@ double cross(const Position2& o, const Position2& a, const Position2& b) {
 
 /// Extreme points in eight directions, counter-clockwise.
 using Octagon = std::array<Position2, 8>;
+static_assert(kCellLanes == 8, "a lane per direction");
 
-Octagon extremes(const OrientedBoxWorkspace& workspace, std::size_t n) {
-  Octagon result;
-  std::array<double, 8> best;
-  best.fill(std::numeric_limits<double>::lowest());
+MRPT_TERRAIN_WIDE_REGISTERS
+void find_extremes(const double* x, const double* y, std::size_t n, Octagon& result) {
+  const DoubleLanes direction_x{1, 1, 0, -1, -1, -1, 0, 1}, direction_y{0, 1, 1, 1, 0, -1, -1, -1};
+  DoubleLanes best = DoubleLanes{} + std::numeric_limits<double>::lowest(), best_x{}, best_y{};
   for (std::size_t i = 0; i < n; ++i) {
-    const double x = workspace.x[i], y = workspace.y[i];
-    const double sum = x + y, difference = y - x;
-    const std::array<double, 8> along{x, sum, y, difference, -x, -sum, -y, -difference};
-    for (std::size_t k = 0; k < 8; ++k) {
-      if (along[k] <= best[k]) continue;
-      best[k] = along[k];
-      result[k] = {x, y};
-    }
+    const DoubleLanes along = direction_x * x[i] + direction_y * y[i];
+    best_x = along > best ? DoubleLanes{} + x[i] : best_x;
+    best_y = along > best ? DoubleLanes{} + y[i] : best_y;
+    best = along > best ? along : best;
   }
-  return result;
+  LaneArray result_x, result_y;
+  store(best_x, result_x);
+  store(best_y, result_y);
+  for (std::size_t k = 0; k < result.size(); ++k)
+    result[k] = {result_x.value[k], result_y.value[k]};
 }
 
 // Least cross product of the edges of the octagon and the places: positive inside.
@@ -153,7 +155,8 @@ OrientedBox box_around(const PointsView& points, IndexRange members,
     low = std::min(low, points.z[i]);
     high = std::max(high, points.z[i]);
   }
-  const Octagon octagon = extremes(workspace, n);
+  Octagon octagon;
+  find_extremes(workspace.x.data(), workspace.y.data(), n, octagon);
   find_inside(octagon, workspace.x.data(), workspace.y.data(), n, workspace.inside.data());
   workspace.candidates.assign(octagon.begin(), octagon.end());
   for (std::size_t i = 0; i < n; ++i) {
