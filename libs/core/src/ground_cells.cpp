@@ -263,8 +263,11 @@ void measure_above_level(const GroundSurfaceParams& params, int level,
   const LevelView view = view_of_level(workspace, cells.lattice, level);
   const auto low_band = static_cast<float>(params.low_band);
   surface.height.resize(cells.points.size());
+  find_steps(view, cells.lattice, level, workspace.step);
+  const LevelStep* step = workspace.step.data();
   for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
-    const LevelView::Linear reference = view.at_cell(cells.cell[slot], level);
+    const LatticeCell cell = cells.cell[slot];
+    const LevelView::Linear reference = view.between(step[cell.row], step[cell.column]);
     const LowBand band = measure_above(points_in(cells, slot), reference, low_band,
                                        surface.height.data() + cells.first[slot]);
     workspace.part[slot] = band.share;

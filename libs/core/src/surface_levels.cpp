@@ -247,6 +247,13 @@ void hear_cells(const GroundSurface& surface, int level, GroundSurfaceWorkspace&
   }
 }
 
+void find_steps(const LevelView& view, const SquareLattice& lattice, int level,
+                std::vector<LevelStep>& step) {
+  step.resize(static_cast<std::size_t>(lattice.side));
+  for (std::int32_t index = 0; index < lattice.side; ++index)
+    step[static_cast<std::size_t>(index)] = view.step_of(index, level);
+}
+
 void start_levels(const GroundSurface& surface, GroundSurfaceWorkspace& workspace) {
   const SquareLattice& lattice = surface.lattice();
   const auto stride = static_cast<std::size_t>(stride_of(lattice.side));
@@ -276,9 +283,7 @@ void refine_level(const GroundSurfaceParams& params, int level, GroundSurfaceWor
 void correct_level(const GroundSurfaceParams& params, int level, GroundSurfaceWorkspace& workspace,
                    const GroundSurface& surface) {
   const LevelView view = view_of_level(workspace, surface.lattice(), level);
-  workspace.step.resize(static_cast<std::size_t>(surface.lattice().side));
-  for (std::int32_t index = 0; index < surface.lattice().side; ++index)
-    workspace.step[static_cast<std::size_t>(index)] = view.step_of(index, level);
+  find_steps(view, surface.lattice(), level, workspace.step);
   for (int pass = 0; pass < corrections(level); ++pass) {
     measure_differences(surface, view, level, workspace);
     weigh_differences(LevelRule(params, level, view.cell_size), workspace.heard,

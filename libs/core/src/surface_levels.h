@@ -60,6 +60,10 @@ struct LevelView {
 [[nodiscard]] LevelView view_of_level(const GroundSurfaceWorkspace& workspace,
                                       const SquareLattice& lattice, int level);
 
+/// Where the centres of all rows, and so columns, of the finest level lie in the level `level`.
+void find_steps(const LevelView& view, const SquareLattice& lattice, int level,
+                std::vector<LevelStep>& step);
+
 /// From this level on, of 3.2 m, all that is near a place may be one ring on a bush. Cells beside
 /// something tall lift these levels by less than rough ground may, and count for less where they
 /// do. If they are ground after all, finer levels follow it.
