@@ -5,8 +5,8 @@
 
 namespace mrpt_terrain {
 
-/// Length of a vector, correctly rounded but for the last bit of the root in double. What
-/// `std::hypot` gives for floats, without the call.
+/// Length of a vector: what `std::hypot` gives for floats, without the call. A square of a float is
+/// exact in double and out of range of neither.
 [[nodiscard]] inline float length_of(float x, float y) {
   const auto u = static_cast<double>(x), v = static_cast<double>(y);
   return static_cast<float>(std::sqrt(u * u + v * v));
