@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <vector>
 
@@ -16,6 +17,12 @@ using Cells = std::vector<CellIndex>;
 Cells marked_around(const CellBits& bits, CellIndex at, int reach) {
   Cells cells;
   bits.for_marked_around(at, reach, [&cells](CellIndex cell) { cells.push_back(cell); });
+  return cells;
+}
+
+Cells marked_before(const CellBits& bits, CellIndex at, int reach) {
+  Cells cells;
+  bits.for_marked_before(at, reach, [&cells](CellIndex cell) { cells.push_back(cell); });
   return cells;
 }
 
@@ -50,6 +57,10 @@ TEST(CellBits, FindsTheCellsThatALookAtEveryCellFinds) {
         }
       }
       EXPECT_EQ(marked_around(bits, cell, reach), expected) << width << " " << trial;
+      expected.erase(std::remove_if(expected.begin(), expected.end(),
+                                    [cell](CellIndex other) { return other.l > cell.l; }),
+                     expected.end());
+      EXPECT_EQ(marked_before(bits, cell, reach), expected) << width << " " << trial;
     }
   }
 }

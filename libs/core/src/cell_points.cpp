@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "prefetch.h"
 #include "wide_registers.h"
 
 namespace mrpt_terrain {
@@ -76,13 +77,21 @@ std::int32_t number_cells(std::vector<std::int32_t>& count, CellPoints& result) 
 }
 
 // Cells become places; `next` is where the next point of every cell goes.
-void place_points(const PointsView scan, std::int32_t* next, std::int32_t* place_of,
-                  CellPoint* points) {
+void find_places(std::int32_t* next, std::vector<std::int32_t>& place_of) {
+  for (std::int32_t& place : place_of) {
+    if (place >= 0) place = next[place]++;
+  }
+}
+
+// Fetching places this many points ahead hides most of the way to the outer caches.
+constexpr std::size_t kPrefetchAhead = 32;
+
+void place_points(const PointsView scan, const std::int32_t* place_of, CellPoint* points) {
   for (std::size_t i = 0; i < scan.size; ++i) {
+    if (i + kPrefetchAhead < scan.size && place_of[i + kPrefetchAhead] >= 0)
+      prefetch_for_writing(points[place_of[i + kPrefetchAhead]]);
     if (place_of[i] < 0) continue;
-    const std::int32_t place = next[place_of[i]]++;
-    place_of[i] = place;
-    points[place] = {scan.x[i], scan.y[i], scan.z[i], static_cast<std::int32_t>(i)};
+    points[place_of[i]] = {scan.x[i], scan.y[i], scan.z[i], static_cast<std::int32_t>(i)};
   }
 }
 
@@ -97,7 +106,8 @@ void sort_into_cells(const PointsView& scan, const SquareLattice& lattice,
   count_points(place_of, workspace.count.data());
   const auto points = static_cast<std::size_t>(number_cells(workspace.count, result));
   result.points.resize(points);
-  place_points(scan, workspace.count.data(), place_of.data(), result.points.data());
+  find_places(workspace.count.data(), place_of);
+  place_points(scan, place_of.data(), result.points.data());
   for (const LatticeCell cell : result.cell) workspace.count[result.number_of(cell)] = 0;
 }
 

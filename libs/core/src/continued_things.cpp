@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "length_of.h"
 #include "slots_around.h"
 
 namespace mrpt_terrain {
@@ -147,7 +148,7 @@ class Continuation {
   [[nodiscard]] bool is_interrupted(const ThingPiece& p, const ThingPiece& q) const {
     if (std::abs(p.top - q.top) > std::min(level_, kTopShare * std::max(p.top, q.top)))
       return false;
-    const float length = std::hypot(q.x - p.x, q.y - p.y);
+    const float length = length_of(q.x - p.x, q.y - p.y);
     if (length < cell_) return false;
     const Line line{p.x, p.y, (q.x - p.x) / length, (q.y - p.y) / length};
     Extent first, second;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "length_of.h"
 #include "mrpt_terrain/core/beam_slope.h"
 
 namespace mrpt_terrain {
@@ -61,7 +62,7 @@ struct DeckSearch {
 
   [[nodiscard]] const DeckLayer& top(std::size_t slot) const { return workspace.top[slot]; }
   [[nodiscard]] bool connected(std::size_t a, std::size_t b) const {
-    const float distance = std::hypot(top(a).x - top(b).x, top(a).y - top(b).y);
+    const float distance = length_of(top(a).x - top(b).x, top(a).y - top(b).y);
     return std::abs(top(a).above - top(b).above) <= kSlack + rise * distance;
   }
   /// Calls `visit` with every observed cell up to `reach` cells away along each axis, and itself.
@@ -100,10 +101,12 @@ void choose_candidates(const ElevationGrid& grid, const GroundSegmentation& grou
 void measure_layers(const PointsView& scan, const FieldPoints& points,
                     const PointSlots& point_slots, const FieldCells& cells,
                     DeckWorkspace& workspace) {
+  workspace.points.clear();
   for (std::size_t i = 0; i < point_slots.size(); ++i) {
     if (point_slots[i] < 0 || points.support[i] != Support::kAbove) continue;
     const auto slot = static_cast<std::size_t>(point_slots[i]);
     if (workspace.candidate[slot] == 0) continue;
+    workspace.points.push_back(static_cast<std::int32_t>(i));
     const float height = points.height[i];
     workspace.all[slot].add(scan.x[i], scan.y[i], scan.z[i], height);
     if (height >= cells.high[slot] - kTopLayer)
@@ -167,11 +170,11 @@ bool fit_surface(const DeckSearch& search, const std::vector<DeckLayer>& layers,
       heights.add(layer.x - at.x, layer.y - at.y, layer.z - at.z);
       above.add(layer.x - at.x, layer.y - at.y, layer.above - at.above);
     });
-    if (heights.n < kFewestLayers) break;
+    if (heights.n() < kFewestLayers) break;
     const SumsPlane through = fit_plane(heights, kHold);
     const SumsPlane over_ground = fit_plane(above, kHold);
     plane = {at.x, at.y, at.z + through.at_centre(), through.gradient_x, through.gradient_y, 0.0F};
-    fit = {std::sqrt(through.variance), std::hypot(over_ground.gradient_x, over_ground.gradient_y)};
+    fit = {std::sqrt(through.variance), length_of(over_ground.gradient_x, over_ground.gradient_y)};
     found = true;
   }
   return found;
@@ -251,14 +254,13 @@ bool is_even(const DeckSearch& search, DeckKind kind) {
 float side_of(const DeckSearch& search, DeckKind kind, std::size_t slot, const DeckPlane& plane) {
   const auto side = static_cast<float>(search.params.side);
   const auto diagonal = static_cast<float>(1.414 * search.grid.geometry.cell_size());
-  const float rise = diagonal * std::hypot(plane.gradient_x, plane.gradient_y);
+  const float rise = diagonal * length_of(plane.gradient_x, plane.gradient_y);
   const bool upright = search.cells.high[slot] - search.cells.low[slot] > rise + 2.0F * side;
   return kind == DeckKind::kLevel || upright ? side : kSlopeSide * side;
 }
 
 // Sums of the points on the surfaces of the decks, about the middles of the cells' tops.
-void sum_surface_points(const PointsView& scan, const FieldPoints& points,
-                        const PointSlots& point_slots, std::size_t measured,
+void sum_surface_points(const PointsView& scan, const PointSlots& point_slots, std::size_t measured,
                         const FieldCells& cells, const DeckParams& params,
                         DeckWorkspace& workspace) {
   const auto side = static_cast<float>(params.side);
@@ -270,8 +272,8 @@ void sum_surface_points(const PointsView& scan, const FieldPoints& points,
     workspace.sums[slot] = {};
     if (!workspace.remembered.empty()) workspace.remembered[slot] = {};
   }
-  for (std::size_t i = 0; i < point_slots.size(); ++i) {
-    if (point_slots[i] < 0 || points.support[i] != Support::kAbove) continue;
+  for (const std::int32_t point : workspace.points) {
+    const auto i = static_cast<std::size_t>(point);
     const auto slot = static_cast<std::size_t>(point_slots[i]);
     if (cells.deck[slot] < 0) continue;
     const DeckPlane& plane = cells.deck_plane[slot];
@@ -302,7 +304,7 @@ HeightSums sums_around(const DeckSearch& search, const std::vector<HeightSums>& 
 float scatter_at(const DeckSearch& search, const std::array<float, 3>& origin, std::size_t slot) {
   const DeckPlane& at = search.cells.deck_plane[slot];
   const HeightSums sums = sums_around(search, search.workspace.sums, slot);
-  if (sums.n < kFewestPoints) return -1.0F;
+  if (sums.n() < kFewestPoints) return -1.0F;
   const SumsPlane plane = fit_plane(sums, kHold);
   const float x = at.x + plane.mean_x - origin[0];
   const float y = at.y + plane.mean_y - origin[1];
@@ -320,7 +322,7 @@ float scatter_at(const DeckSearch& search, const std::array<float, 3>& origin, s
 // The same for remembered points, of which it is not known from where they were seen.
 float remembered_scatter_at(const DeckSearch& search, std::size_t slot) {
   const HeightSums sums = sums_around(search, search.workspace.remembered, slot);
-  if (sums.n < kFewestPoints) return -1.0F;
+  if (sums.n() < kFewestPoints) return -1.0F;
   const SumsPlane plane = fit_plane(sums, kHold);
   const float length =
       std::sqrt(1.0F + plane.gradient_x * plane.gradient_x + plane.gradient_y * plane.gradient_y);
@@ -403,8 +405,7 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
     }
     mark_members(search, false);
   }
-  sum_surface_points(scan.points, points, point_slots, scan.origins.measured, cells, params,
-                     workspace);
+  sum_surface_points(scan.points, point_slots, scan.origins.measured, cells, params, workspace);
   // A moving sensor sees a deck from nearly the same place.
   drop_loose_decks(search, scan.origins.known() ? scan.origins.of(0) : kUnknownOrigin, found,
                    cells);

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "prefetch.h"
 #include "wide_registers.h"
 
 namespace mrpt_terrain {
@@ -63,15 +64,20 @@ ProjectionCounts mark_hits(const PointsView points, const float* heights, const 
   return counts;
 }
 
-// Position of the first byte in memory that is not 0. Requires one.
-std::size_t first_nonzero_byte(std::uint64_t eight) {
+// Takes the first byte in memory that is not 0 out of eight that are 0 or 1. Requires one.
+// \return its position
+std::size_t take_first_one(std::uint64_t& eight) {
 #if defined(__GNUC__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
-  return static_cast<std::size_t>(__builtin_ctzll(eight)) / 8;
+  const auto first = static_cast<std::size_t>(__builtin_ctzll(eight)) / 8;
+  eight &= eight - 1;
+  return first;
 #else
   std::array<std::uint8_t, 8> bytes;
   std::memcpy(bytes.data(), &eight, 8);
   const auto found =
       std::find_if(bytes.begin(), bytes.end(), [](std::uint8_t b) { return b != 0; });
+  *found = 0;
+  std::memcpy(&eight, bytes.data(), 8);
   return static_cast<std::size_t>(found - bytes.begin());
 #endif
 }
@@ -80,9 +86,11 @@ std::size_t first_nonzero_byte(std::uint64_t eight) {
 void number_observed_cells(std::vector<std::uint8_t>& hit, ElevationGrid& grid) {
   for (std::size_t base = 0; base < hit.size(); base += 8) {
     std::uint64_t eight = 0;
-    for (std::memcpy(&eight, &hit[base], 8); eight != 0; std::memcpy(&eight, &hit[base], 8)) {
-      const std::size_t id = base + first_nonzero_byte(eight);
-      hit[id] = 0;
+    std::memcpy(&eight, &hit[base], 8);
+    if (eight == 0) continue;
+    std::memset(&hit[base], 0, 8);
+    while (eight != 0) {
+      const std::size_t id = base + take_first_one(eight);
       grid.slot_of[id] = static_cast<Slot>(grid.cell.size());
       grid.cell.push_back(CellId{static_cast<std::int32_t>(id)});
     }
@@ -98,16 +106,6 @@ void replace_cells_by_slots(const Slot* slot_of, PointSlots& point_slots) {
 // Fetching a cell's sums this many points ahead hides most of the way to the outer caches.
 constexpr std::size_t kPrefetchAhead = 12;
 
-void prefetch(const MomentSums& sums) {
-#if defined(__GNUC__)
-  const char* bytes = reinterpret_cast<const char*>(&sums);
-  __builtin_prefetch(bytes, 1);
-  __builtin_prefetch(bytes + sizeof(MomentSums) - 1, 1);
-#else
-  (void)sums;
-#endif
-}
-
 void accumulate(const PointsView points, const PointSlots& point_slots, ElevationGrid& grid) {
   const std::int32_t* slots = point_slots.data();
   MomentSums* sums = grid.sums.data();
@@ -115,7 +113,7 @@ void accumulate(const PointsView points, const PointSlots& point_slots, Elevatio
   float* h_max = grid.h_max.data();
   for (std::size_t i = 0; i < points.size; ++i) {
     if (i + kPrefetchAhead < points.size && slots[i + kPrefetchAhead] >= 0) {
-      prefetch(sums[slots[i + kPrefetchAhead]]);
+      prefetch_for_writing(sums[slots[i + kPrefetchAhead]]);
     }
     const std::int32_t slot = slots[i];
     if (slot < 0) continue;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "face_consensus.h"
+#include "length_of.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -43,7 +44,7 @@ struct Meeting {
   }
   /// Distance along the beam, metres.
   [[nodiscard]] float noise() const {
-    return std::abs(distance) / std::hypot(along, static_cast<float>(kAcrossBeam));
+    return std::abs(distance) / length_of(along, static_cast<float>(kAcrossBeam));
   }
   /// How far behind the point the beam meets the plane, metres.
   [[nodiscard]] float behind() const { return -distance / along; }

@@ -9,6 +9,7 @@
 #include "face_consensus.h"
 #include "face_edges.h"
 #include "face_errors.h"
+#include "length_of.h"
 #include "ring_errors.h"
 
 namespace mrpt_terrain {
@@ -97,7 +98,7 @@ void select_points(const BeamPlane& plane, float limit, BeamPoints& points) {
   for (std::size_t i = 0; i < points.size; ++i) {
     const float e = n.x() * points.x[i] + n.y() * points.y[i] + n.z() * points.z[i] + d;
     const float along = n.x() * points.dx[i] + n.y() * points.dy[i] + n.z() * points.dz[i];
-    const float across = std::hypot(along, static_cast<float>(kAcrossBeam));
+    const float across = length_of(along, static_cast<float>(kAcrossBeam));
     points.count[i] = std::abs(e) <= limit * across ? 1.0F : 0.0F;
   }
 }
@@ -152,7 +153,7 @@ Moments find_face(const BeamPlaneFit& fit, FaceSlopeWorkspace& workspace) {
     const float e = n.x() * points.x[i] + n.y() * points.y[i] + n.z() * points.z[i] + d;
     const float along = n.x() * points.dx[i] + n.y() * points.dy[i] + n.z() * points.dz[i];
     const float sigma =
-        static_cast<float>(fit.range_sigma) * std::hypot(along, static_cast<float>(kAcrossBeam));
+        static_cast<float>(fit.range_sigma) * length_of(along, static_cast<float>(kAcrossBeam));
     if (workspace.beyond[i] != 0 || std::abs(e) > kOnFace * sigma) continue;
     sums.add(points.x[i], points.y[i], points.z[i]);
     FaceBeam beam;
@@ -161,7 +162,7 @@ Moments find_face(const BeamPlaneFit& fit, FaceSlopeWorkspace& workspace) {
     beam.point = static_cast<std::int32_t>(i);
     workspace.beams.push_back(beam);
   }
-  sort_beams(workspace.beams);
+  sort_beams(workspace);
   return moments_from(sums);
 }
 

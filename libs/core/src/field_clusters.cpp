@@ -68,18 +68,19 @@ void link_back(const Linker& linker, std::size_t slot, const FieldClusterParams&
   const ElevationGrid& grid = linker.grid;
   const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
   auto root = static_cast<std::int32_t>(slot);
-  const auto link = [&](CellIndex near) {
+  const auto link = [&](CellIndex near, bool touching) {
     const Slot other = grid.slot_at(near);
-    if (root_of(parent, other) == root) return;
     const auto beside = static_cast<std::size_t>(other);
-    const bool touching = at.l - near.l <= 1 && std::abs(at.w - near.w) <= 1;
+    if (parent[beside] == root || root_of(parent, other) == root) return;
     if (!linker.compatible(slot, beside, touching) || linker.divided(slot, beside)) return;
     unite(parent, root, other);
     root = root_of(parent, root);
   };
   // Most of what is farther away is of one thing with what touches: then nothing more is asked.
-  members.for_marked_around(at, 1, link);
-  members.for_marked_around(at, reach_of(grid, params, at), link);
+  members.for_marked_before(at, 1, [&](CellIndex near) { link(near, true); });
+  members.for_marked_before(at, reach_of(grid, params, at), [&](CellIndex near) {
+    if (at.l - near.l > 1 || std::abs(at.w - near.w) > 1) link(near, false);
+  });
   members.mark(at);
 }
 
@@ -97,7 +98,7 @@ class UnseenLinker {
     if (!is_raised_only(slot)) return;
     const ElevationGrid& grid = linker_.grid;
     const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
-    raised.for_marked_around(at, reach_, [&](CellIndex near) {
+    raised.for_marked_before(at, reach_, [&](CellIndex near) {
       const Slot other = grid.slot_at(near);
       if (as_high(slot, static_cast<std::size_t>(other)) && is_unseen(at, near))
         unite(parent, static_cast<std::int32_t>(slot), other);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 
 #include "nine_cells.h"
@@ -70,17 +71,27 @@ struct BandCounts {
   }
 };
 
+// (x, y, z, 1).
+FourFloats place_of(const CellPoint& point) {
+  static_assert(sizeof(CellPoint) == sizeof(FourFloats));
+  FourFloats place;
+  std::memcpy(&place, &point, sizeof(place));
+  place[3] = 1.0F;
+  return place;
+}
+
 // The low band of a cell, and the sums of its points up to `low_part` above the lowest.
 LowBand measure_points(const PointsOfCell& cell, float band, float low_part, HeightSums& sums) {
   float lowest = std::numeric_limits<float>::max();
   for (const CellPoint* p = cell.first; p != cell.last; ++p) lowest = std::min(lowest, p->z);
   BandCounts counts{band};
   sums = {};
+  const FourFloats centre{cell.centre_x, cell.centre_y, 0.0F, 0.0F};
   const float top = lowest + low_part;
   for (const CellPoint* p = cell.first; p != cell.last; ++p) {
     counts.add(p->z - lowest);
     const float counted = p->z <= top ? 1.0F : 0.0F;
-    sums.add_weighted(p->x - cell.centre_x, p->y - cell.centre_y, p->z, counted);
+    sums.add_weighted(place_of(*p) - centre, counted);
   }
   return counts.over(lowest);
 }
@@ -104,9 +115,9 @@ LowBand measure_above(const PointsOfCell& cell, const LevelView::Linear& referen
 // Variance across the plane of the points, by one over the trace of the inverse covariance: it is
 // at most the smallest eigenvalue and at least a third of it, and needs no eigenvalues.
 float variance_across(const HeightSums& s) {
-  const float x = s.x / s.n, y = s.y / s.n, z = s.z / s.n;
-  const float a = s.xx / s.n - x * x, b = s.xy / s.n - x * y, c = s.yy / s.n - y * y;
-  const float d = s.xz / s.n - x * z, e = s.yz / s.n - y * z, f = s.zz / s.n - z * z;
+  const HeightMoments m(s);
+  const float a = m.variances[0], c = m.variances[1], f = m.variances[2];
+  const float b = m.covariances[0], d = m.covariances[1], e = m.covariances[2];
   const float ac = a * c - b * b, af = a * f - d * d, cf = c * f - e * e;
   const float determinant = f * ac - d * (d * c - b * e) + e * (d * b - a * e);
   const float minors = ac + af + cf;
@@ -116,7 +127,7 @@ float variance_across(const HeightSums& s) {
 // Points of the nine cells about a slot, heights from its own mean.
 HeightSums sums_around(const CellPoints& cells, const std::vector<HeightSums>& sums,
                        std::size_t slot) {
-  const float z = sums[slot].z / sums[slot].n;
+  const float z = sums[slot].sum[2] / sums[slot].n();
   const float size = cells.lattice.cell_size;
   HeightSums around;
   for_nine_cells(cells, slot, [&](std::int32_t row, std::int32_t column, std::size_t other) {
@@ -261,8 +272,11 @@ void measure_above_level(const GroundSurfaceParams& params, int level,
   const LevelView view = view_of_level(workspace, cells.lattice, level);
   const auto low_band = static_cast<float>(params.low_band);
   surface.height.resize(cells.points.size());
+  find_steps(view, cells.lattice, level, workspace.step);
+  const LevelStep* step = workspace.step.data();
   for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
-    const LevelView::Linear reference = view.at_cell(cells.cell[slot], level);
+    const LatticeCell cell = cells.cell[slot];
+    const LevelView::Linear reference = view.between(step[cell.row], step[cell.column]);
     const LowBand band = measure_above(points_in(cells, slot), reference, low_band,
                                        surface.height.data() + cells.first[slot]);
     workspace.part[slot] = band.share;

@@ -6,6 +6,7 @@
 
 #include "ditch_cells.h"
 #include "ground_cells.h"
+#include "length_of.h"
 #include "mrpt_terrain/core/random.h"
 #include "surface_levels.h"
 #include "tall_things.h"
@@ -17,6 +18,7 @@ namespace {
 // Finest level that lowest points of cells are good enough for; below it, heights are taken above
 // the level, so that slopes do not count as low points.
 constexpr int kRawLevel = 3;
+static_assert(kRawLevel == kCoarseLevel, "cells are heard once for each of the two kinds");
 
 // Search for the plane near the robot.
 constexpr float kPlaneRange = 20.0F;       // metres
@@ -103,7 +105,7 @@ bool plane_through(const GroundSurfaceWorkspace& workspace, std::size_t i, std::
 
 bool is_permitted(const GroundHypothesis& plane, const GroundSurfaceParams& params) {
   const double steepest = std::tan(params.max_tilt);
-  const double gradient = std::hypot(plane.gradient_x, plane.gradient_y);
+  const double gradient = length_of(plane.gradient_x, plane.gradient_y);
   return gradient <= steepest && std::abs(plane.offset) <= params.max_offset;
 }
 
@@ -117,8 +119,8 @@ void find_plane(const GroundSurfaceParams& params, GroundSurfaceWorkspace& works
   if (n < 3) return;
   workspace.mixed.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    workspace.mixed[i] = kPlaneTolerance + kPlaneGrowth * std::hypot(workspace.candidate_x[i],
-                                                                     workspace.candidate_y[i]);
+    workspace.mixed[i] = kPlaneTolerance + kPlaneGrowth * length_of(workspace.candidate_x[i],
+                                                                    workspace.candidate_y[i]);
   }
   const auto score = [&workspace, n](const GroundHypothesis& plane) {
     return score_of(plane, workspace.candidate_x.data(), workspace.candidate_y.data(),
@@ -142,18 +144,34 @@ void find_plane(const GroundSurfaceParams& params, GroundSurfaceWorkspace& works
   surface.offset = best.offset;
 }
 
-// Heights of all points above the finest level.
+// Points whose heights are measured together.
+constexpr std::size_t kTogether = 64;
+
+// Heights of up to `kTogether` points above a level: loops of one kind of work each, most of which
+// compilers do for many points at once.
+MRPT_TERRAIN_WIDE_REGISTERS
+void measure_heights(const CellPoint* points, std::size_t n, const LevelView level, float* height) {
+  const float per_metre = 1.0F / level.cell_size;
+  const float half = 0.5F * static_cast<float>(level.side) - 0.5F;
+  std::array<LevelStep, kTogether> row, column;
+  std::array<LevelView::Corners, kTogether> corners;
+  for (std::size_t i = 0; i < n; ++i) {
+    row[i] = level.step_at(points[i].x * per_metre + half);
+    column[i] = level.step_at(points[i].y * per_metre + half);
+  }
+  for (std::size_t i = 0; i < n; ++i) corners[i] = level.corners_of(row[i], column[i]);
+  for (std::size_t i = 0; i < n; ++i)
+    height[i] = points[i].z - level.between(corners[i], row[i], column[i]).height;
+}
+
 void measure_heights(GroundSurface& surface) {
   const CellPoints& cells = surface.cells;
-  const LevelView view{surface.node.data(), cells.lattice.side, cells.lattice.cell_size};
-  const float per_metre = 1.0F / cells.lattice.cell_size;
-  const float half = 0.5F * static_cast<float>(cells.lattice.side) - 0.5F;
-  surface.height.resize(cells.points.size());
-  for (std::size_t i = 0; i < surface.height.size(); ++i) {
-    const CellPoint& point = cells.points[i];
-    const LevelStep row = view.step_at(point.x * per_metre + half);
-    const LevelStep column = view.step_at(point.y * per_metre + half);
-    surface.height[i] = point.z - view.between(row, column).height;
+  const std::size_t n = cells.points.size();
+  const LevelView finest{surface.node.data(), cells.lattice.side, cells.lattice.cell_size};
+  surface.height.resize(n);
+  for (std::size_t first = 0; first < n; first += kTogether) {
+    measure_heights(cells.points.data() + first, std::min(kTogether, n - first), finest,
+                    surface.height.data() + first);
   }
 }
 
@@ -171,11 +189,13 @@ void find_ground_surface(const ScanView& scan, const GroundSurfaceParams& params
   find_tall_things(result, workspace);
   find_ditch_cells(result, workspace);
   start_levels(result, workspace);
+  hear_cells(result, kSurfaceLevels - 1, workspace);
   correct_level(params, kSurfaceLevels - 1, workspace, result);
   for (int level = kSurfaceLevels - 2; level >= kRawLevel; --level) {
     refine_level(params, level, workspace, result);
   }
   measure_above_level(params, kRawLevel, workspace, result);
+  hear_cells(result, kRawLevel - 1, workspace);
   for (int level = kRawLevel - 1; level >= 0; --level) {
     refine_level(params, level, workspace, result);
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lanes.h"
 #include "wide_registers.h"
 
 namespace mrpt_terrain {
@@ -19,22 +20,23 @@ double cross(const Position2& o, const Position2& a, const Position2& b) {
 
 /// Extreme points in eight directions, counter-clockwise.
 using Octagon = std::array<Position2, 8>;
+static_assert(kCellLanes == 8, "a lane per direction");
 
-Octagon extremes(const OrientedBoxWorkspace& workspace, std::size_t n) {
-  Octagon result;
-  std::array<double, 8> best;
-  best.fill(std::numeric_limits<double>::lowest());
+MRPT_TERRAIN_WIDE_REGISTERS
+void find_extremes(const double* x, const double* y, std::size_t n, Octagon& result) {
+  const DoubleLanes direction_x{1, 1, 0, -1, -1, -1, 0, 1}, direction_y{0, 1, 1, 1, 0, -1, -1, -1};
+  DoubleLanes best = DoubleLanes{} + std::numeric_limits<double>::lowest(), best_x{}, best_y{};
   for (std::size_t i = 0; i < n; ++i) {
-    const double x = workspace.x[i], y = workspace.y[i];
-    const double sum = x + y, difference = y - x;
-    const std::array<double, 8> along{x, sum, y, difference, -x, -sum, -y, -difference};
-    for (std::size_t k = 0; k < 8; ++k) {
-      if (along[k] <= best[k]) continue;
-      best[k] = along[k];
-      result[k] = {x, y};
-    }
+    const DoubleLanes along = direction_x * x[i] + direction_y * y[i];
+    best_x = along > best ? DoubleLanes{} + x[i] : best_x;
+    best_y = along > best ? DoubleLanes{} + y[i] : best_y;
+    best = along > best ? along : best;
   }
-  return result;
+  LaneArray result_x, result_y;
+  store(best_x, result_x);
+  store(best_y, result_y);
+  for (std::size_t k = 0; k < result.size(); ++k)
+    result[k] = {result_x.value[k], result_y.value[k]};
 }
 
 // Least cross product of the edges of the octagon and the places: positive inside.
@@ -90,6 +92,43 @@ OrientedBox rectangle_along(const std::vector<Position2>& hull, double c, double
   return box;
 }
 
+// Area of the rectangle with a side along an edge, times the squared length of the edge.
+double scaled_area_along(const std::vector<Position2>& hull, const Position2& edge) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  double low_u = kMost, high_u = -kMost, low_v = kMost, high_v = -kMost;
+  for (const Position2& p : hull) {
+    const double u = edge.x * p.x + edge.y * p.y, v = edge.x * p.y - edge.y * p.x;
+    low_u = std::min(low_u, u);
+    high_u = std::max(high_u, u);
+    low_v = std::min(low_v, v);
+    high_v = std::max(high_v, v);
+  }
+  return (high_u - low_u) * (high_v - low_v);
+}
+
+// The smallest rectangle with a side along an edge of the hull; of several, the first.
+OrientedBox smallest_rectangle(const std::vector<Position2>& hull) {
+  // More than rounding makes of an area, m^2. Most edges are told by it to have no smaller
+  // rectangle, without roots, quotients and angles.
+  constexpr double kRounding = 1e-6;
+  OrientedBox best = rectangle_along(hull, 1.0, 0.0);
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t k = 0; k < hull.size() && hull.size() > 1; ++k) {
+    const Position2& p = hull[k];
+    const Position2& q = hull[(k + 1) % hull.size()];
+    const Position2 edge{q.x - p.x, q.y - p.y};
+    const double squared_length = edge.x * edge.x + edge.y * edge.y;
+    if (scaled_area_along(hull, edge) > (least + kRounding) * squared_length) continue;
+    const double length = std::hypot(edge.x, edge.y);
+    if (!(length > 0.0)) continue;
+    const OrientedBox box = rectangle_along(hull, edge.x / length, edge.y / length);
+    if (box.length * box.width >= least) continue;
+    least = box.length * box.width;
+    best = box;
+  }
+  return best;
+}
+
 void turn_to_longer_side(OrientedBox& box) {
   if (box.width > box.length) {
     std::swap(box.width, box.length);
@@ -116,7 +155,8 @@ OrientedBox box_around(const PointsView& points, IndexRange members,
     low = std::min(low, points.z[i]);
     high = std::max(high, points.z[i]);
   }
-  const Octagon octagon = extremes(workspace, n);
+  Octagon octagon;
+  find_extremes(workspace.x.data(), workspace.y.data(), n, octagon);
   find_inside(octagon, workspace.x.data(), workspace.y.data(), n, workspace.inside.data());
   workspace.candidates.assign(octagon.begin(), octagon.end());
   for (std::size_t i = 0; i < n; ++i) {
@@ -124,19 +164,7 @@ OrientedBox box_around(const PointsView& points, IndexRange members,
       workspace.candidates.push_back({workspace.x[i], workspace.y[i]});
   }
   find_hull(workspace.candidates, workspace.hull);
-  const std::vector<Position2>& hull = workspace.hull;
-  best = rectangle_along(hull, 1.0, 0.0);
-  double least = hull.size() < 2 ? 0.0 : std::numeric_limits<double>::max();
-  for (std::size_t k = 0; k < hull.size() && hull.size() > 1; ++k) {
-    const Position2& p = hull[k];
-    const Position2& q = hull[(k + 1) % hull.size()];
-    const double length = std::hypot(q.x - p.x, q.y - p.y);
-    if (!(length > 0.0)) continue;
-    const OrientedBox box = rectangle_along(hull, (q.x - p.x) / length, (q.y - p.y) / length);
-    if (box.length * box.width >= least) continue;
-    least = box.length * box.width;
-    best = box;
-  }
+  best = smallest_rectangle(workspace.hull);
   turn_to_longer_side(best);
   best.low = low;
   best.high = high;

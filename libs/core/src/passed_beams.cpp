@@ -2,10 +2,12 @@
 #include "passed_beams.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 
+#include "length_of.h"
 #include "slots_around.h"
 #include "thing_pieces.h"
 
@@ -46,19 +48,31 @@ bool parts_touch(std::uint16_t of_a, std::uint16_t of_b, CellIndex offset) {
   return (around & b) != 0;
 }
 
+/// The parts of a cell that are marked, one after the other.
+struct MarkedParts {
+  std::array<CellIndex, kParts * kParts> part;
+  std::size_t size = 0;
+
+  MarkedParts(std::uint16_t marks, CellIndex offset) {
+    for (int k = 0; k < kParts * kParts; ++k) {
+      part[size] = {kParts * offset.l + k / kParts, kParts * offset.w + k % kParts};
+      size += marks >> k & 1U;
+    }
+  }
+  [[nodiscard]] const CellIndex* begin() const { return part.data(); }
+  [[nodiscard]] const CellIndex* end() const { return part.data() + size; }
+};
+
 /// The parts of two cells that are nearest to each other; of equal distances, the first. Counted
 /// from the first part of the first cell.
 struct NearestParts {
   CellIndex a, b;
 
   NearestParts(std::uint16_t of_a, std::uint16_t of_b, CellIndex offset) {
+    const MarkedParts all_a(of_a, {0, 0}), all_b(of_b, offset);
     int least = 1 << 30;
-    for (int i = 0; i < kParts * kParts; ++i) {
-      if ((of_a >> i & 1) == 0) continue;
-      for (int k = 0; k < kParts * kParts; ++k) {
-        if ((of_b >> k & 1) == 0) continue;
-        const CellIndex from{i / kParts, i % kParts};
-        const CellIndex to{kParts * offset.l + k / kParts, kParts * offset.w + k % kParts};
+    for (const CellIndex from : all_a) {
+      for (const CellIndex to : all_b) {
         const int dl = to.l - from.l, dw = to.w - from.w;
         if (dl * dl + dw * dw >= least) continue;
         least = dl * dl + dw * dw;
@@ -81,7 +95,7 @@ PassedBeams::PassedBeams(const ElevationGrid& grid, const FieldCells& cells,
 bool PassedBeams::have_passed(const Position2& at, float ground, float top) const {
   const float dx = static_cast<float>(at.x) - sensor_[0];
   const float dy = static_cast<float>(at.y) - sensor_[1];
-  const float range = std::hypot(dx, dy);
+  const float range = length_of(dx, dy);
   if (range < cell_) return false;
   float last = kBehind;
   if (sensor_[2] > top)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace mrpt_terrain {
 namespace {
@@ -41,6 +42,15 @@ struct Sector {
   float farthest = 0.0F;              ///< horizontal distance, metres
 };
 
+// From one azimuth to another, -pi to pi; both have to be that, too. Differences of more than half
+// a turn and a whole turn are exact, as `std::remainder` is.
+float turn_from(float from, float to) {
+  constexpr auto kTurn = static_cast<float>(2.0 * M_PI);
+  const float turn = to - from;
+  if (turn > 0.5F * kTurn) return turn - kTurn;
+  return turn < -0.5F * kTurn ? turn + kTurn : turn;
+}
+
 bool sector_of(const FaceSlopeWorkspace& workspace, Sector& sector) {
   if (workspace.beams.empty()) return false;
   const BeamPoints& points = workspace.points;
@@ -55,8 +65,7 @@ bool sector_of(const FaceSlopeWorkspace& workspace, Sector& sector) {
   sector.high = std::numeric_limits<float>::lowest();
   for (const FaceBeam& beam : workspace.beams) {
     const auto i = static_cast<std::size_t>(beam.point);
-    const float turn = std::remainder(std::atan2(points.dy[i], points.dx[i]) - sector.middle,
-                                      static_cast<float>(2.0 * M_PI));
+    const float turn = turn_from(sector.middle, std::atan2(points.dy[i], points.dx[i]));
     sector.before = std::min(sector.before, turn);
     sector.after = std::max(sector.after, turn);
     sector.low = std::min(sector.low, beam.elevation);
@@ -123,10 +132,9 @@ class GroundSearch {
       if (flat > sector_.farthest * sector_.farthest || dz >= 0.0F) continue;
       // Both tangents are negative.
       if (dz * dz > tan_low_ * tan_low_ * flat || dz * dz < tan_high_ * tan_high_ * flat) continue;
-      const float azimuth = std::atan2(dy, dx);
-      const float turn = std::remainder(azimuth - sector_.middle, static_cast<float>(2.0 * M_PI));
+      const float turn = turn_from(sector_.middle, std::atan2(dy, dx));
       if (turn < sector_.before - kAside || turn > sector_.after + kAside) continue;
-      visitor(p.index, azimuth, std::atan2(dz, std::sqrt(flat)));
+      visitor(p.index, turn, std::atan2(dz, std::sqrt(flat)));
     }
   }
 
@@ -137,10 +145,7 @@ class GroundSearch {
   float tan_low_, tan_high_;
 };
 
-std::int32_t column_of(float azimuth, const Sector& sector) {
-  const float turn = std::remainder(azimuth - sector.middle, static_cast<float>(2.0 * M_PI));
-  return static_cast<std::int32_t>(std::floor(turn / kColumn));
-}
+std::int32_t column_of(float turn) { return static_cast<std::int32_t>(std::floor(turn / kColumn)); }
 
 // Adds up the points of the ground in parts of rings. Distances are those from the plane that is
 // known of the ground, places are about its centre.
@@ -239,12 +244,37 @@ struct GroundFit {
 
 }  // namespace
 
-void sort_beams(std::vector<FaceBeam>& beams) {
-  std::sort(beams.begin(), beams.end(), [](const FaceBeam& a, const FaceBeam& b) {
-    if (a.column != b.column) return a.column < b.column;
-    if (a.elevation != b.elevation) return a.elevation < b.elevation;
-    return a.ground != b.ground ? b.ground : a.point < b.point;
-  });
+// By counting columns, as these are few, and then within each column.
+void sort_beams(FaceSlopeWorkspace& workspace) {
+  const std::vector<FaceBeam>& beams = workspace.beams;
+  if (beams.empty()) return;
+  std::int32_t low = beams.front().column, high = low;
+  for (const FaceBeam& beam : beams) {
+    low = std::min(low, beam.column);
+    high = std::max(high, beam.column);
+  }
+  std::vector<std::int32_t>& next = workspace.first_beam;
+  next.assign(static_cast<std::size_t>(high - low) + 2, 0);
+  for (const FaceBeam& beam : beams) ++next[static_cast<std::size_t>(beam.column - low) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<FaceBeam>& sorted = workspace.beams_by_column;
+  sorted.resize(beams.size());
+  for (const FaceBeam& beam : beams) {
+    std::int32_t& place = next[static_cast<std::size_t>(beam.column - low)];
+    sorted[static_cast<std::size_t>(place++)] = beam;
+  }
+  // The place behind the last beam of each column is left.
+  std::ptrdiff_t first = 0;
+  for (std::size_t column = 0; column + 1 < next.size(); ++column) {
+    const std::ptrdiff_t last = next[column];
+    std::sort(sorted.begin() + first, sorted.begin() + last,
+              [](const FaceBeam& a, const FaceBeam& b) {
+                if (a.elevation != b.elevation) return a.elevation < b.elevation;
+                return a.ground != b.ground ? b.ground : a.point < b.point;
+              });
+    first = last;
+  }
+  workspace.beams.swap(sorted);
 }
 
 void add_beams_beside(const BeamOrigins& origins, const FaceSurroundings& around,
@@ -254,21 +284,22 @@ void add_beams_beside(const BeamOrigins& origins, const FaceSurroundings& around
   // Columns are those of azimuths about the middle of the face, so that none is at their end.
   for (FaceBeam& beam : workspace.beams) {
     const auto i = static_cast<std::size_t>(beam.point);
-    beam.column = column_of(std::atan2(workspace.points.dy[i], workspace.points.dx[i]), sector);
+    const float azimuth = std::atan2(workspace.points.dy[i], workspace.points.dx[i]);
+    beam.column = column_of(turn_from(sector.middle, azimuth));
   }
   sector.farthest = static_cast<float>(std::hypot(around.place.x() - double{origin[0]},
                                                   around.place.y() - double{origin[1]})) +
                     kFarther;
   const GroundSearch search(origins, around, origin, sector);
-  search.visit([&](std::int32_t point, float azimuth, float elevation) {
+  search.visit([&](std::int32_t point, float turn, float elevation) {
     FaceBeam beam;
-    beam.column = column_of(azimuth, sector);
+    beam.column = column_of(turn);
     beam.elevation = elevation;
     beam.point = point;
     beam.ground = true;
     workspace.beams.push_back(beam);
   });
-  sort_beams(workspace.beams);
+  sort_beams(workspace);
 }
 
 void follow_beams(std::vector<FaceBeam>& beams, std::vector<FaceRing>& rings) {

@@ -23,7 +23,7 @@ void add_beams_beside(const BeamOrigins& origins, const FaceSurroundings& around
                       const std::array<float, 3>& origin, FaceSlopeWorkspace& workspace);
 
 /// Sorts beams by column, then by elevation.
-void sort_beams(std::vector<FaceBeam>& beams);
+void sort_beams(FaceSlopeWorkspace& workspace);
 
 /// Gives every beam the number of its ring: that whose elevation was nearest in the columns
 /// before. A ring that was not seen for some columns ends.

@@ -18,10 +18,7 @@ constexpr int kFineLevel = 2;
 // Weight of a height below the reference is at least this share of that of a perfect cell: what is
 // low limits the ground, however rough it is.
 constexpr float kLeastBelow = 0.1F;
-// From this level on, of 3.2 m, all that is near a place may be one ring on a bush. Cells beside
-// something tall lift these levels by less than rough ground may, and count for less where they
-// do. If they are ground after all, finer levels follow it.
-constexpr int kCoarseLevel = 3;
+// Of cells beside something tall, on levels from `kCoarseLevel` on.
 constexpr float kBesideTallBend = 0.75F;  // of `rough_bend`
 constexpr float kBesideTallWeight = 0.2F;
 
@@ -226,7 +223,14 @@ void apply_differences(float hold, std::int32_t side, GroundSurfaceWorkspace& wo
   clear_frame(side, weight);
 }
 
-// What the cells say of the ground, as vectors of numbers.
+}  // namespace
+
+LevelView view_of_level(const GroundSurfaceWorkspace& workspace, const SquareLattice& lattice,
+                        int level) {
+  return {workspace.level[static_cast<std::size_t>(level)].data(), side_of(lattice, level),
+          lattice.cell_size * static_cast<float>(1 << level)};
+}
+
 void hear_cells(const GroundSurface& surface, int level, GroundSurfaceWorkspace& workspace) {
   const std::size_t n = surface.ground.size();
   HeardCells& heard = workspace.heard;
@@ -245,12 +249,11 @@ void hear_cells(const GroundSurface& surface, int level, GroundSurfaceWorkspace&
   }
 }
 
-}  // namespace
-
-LevelView view_of_level(const GroundSurfaceWorkspace& workspace, const SquareLattice& lattice,
-                        int level) {
-  return {workspace.level[static_cast<std::size_t>(level)].data(), side_of(lattice, level),
-          lattice.cell_size * static_cast<float>(1 << level)};
+void find_steps(const LevelView& view, const SquareLattice& lattice, int level,
+                std::vector<LevelStep>& step) {
+  step.resize(static_cast<std::size_t>(lattice.side));
+  for (std::int32_t index = 0; index < lattice.side; ++index)
+    step[static_cast<std::size_t>(index)] = view.step_of(index, level);
 }
 
 void start_levels(const GroundSurface& surface, GroundSurfaceWorkspace& workspace) {
@@ -282,10 +285,7 @@ void refine_level(const GroundSurfaceParams& params, int level, GroundSurfaceWor
 void correct_level(const GroundSurfaceParams& params, int level, GroundSurfaceWorkspace& workspace,
                    const GroundSurface& surface) {
   const LevelView view = view_of_level(workspace, surface.lattice(), level);
-  workspace.step.resize(static_cast<std::size_t>(surface.lattice().side));
-  for (std::int32_t index = 0; index < surface.lattice().side; ++index)
-    workspace.step[static_cast<std::size_t>(index)] = view.step_of(index, level);
-  hear_cells(surface, level, workspace);
+  find_steps(view, surface.lattice(), level, workspace.step);
   for (int pass = 0; pass < corrections(level); ++pass) {
     measure_differences(surface, view, level, workspace);
     weigh_differences(LevelRule(params, level, view.cell_size), workspace.heard,

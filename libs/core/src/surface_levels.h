@@ -35,20 +35,43 @@ struct LevelView {
   [[nodiscard]] LevelStep step_of(std::int32_t index, int level) const {
     return step_at((static_cast<float>(index) + 0.5F) / static_cast<float>(1 << level) - 0.5F);
   }
-  /// Height and gradient between four centres.
-  [[nodiscard]] Linear between(LevelStep row, LevelStep column) const {
+  /// Heights at four centres.
+  struct Corners {
+    float low_left, low_right, high_left, high_right;
+  };
+  [[nodiscard]] Corners corners_of(LevelStep row, LevelStep column) const {
     const float* q = height + static_cast<std::ptrdiff_t>(row.first) * side + column.first;
-    const float low = q[0] + column.share * (q[1] - q[0]);
-    const float high = q[side] + column.share * (q[side + 1] - q[side]);
-    const float left = q[0] + row.share * (q[side] - q[0]);
-    const float right = q[1] + row.share * (q[side + 1] - q[1]);
+    return {q[0], q[1], q[side], q[side + 1]};
+  }
+  /// Height and gradient between four centres.
+  [[nodiscard]] Linear between(const Corners& q, LevelStep row, LevelStep column) const {
+    const float low = q.low_left + column.share * (q.low_right - q.low_left);
+    const float high = q.high_left + column.share * (q.high_right - q.high_left);
+    const float left = q.low_left + row.share * (q.high_left - q.low_left);
+    const float right = q.low_right + row.share * (q.high_right - q.low_right);
     return {low + row.share * (high - low), (high - low) / cell_size, (right - left) / cell_size};
+  }
+  [[nodiscard]] Linear between(LevelStep row, LevelStep column) const {
+    return between(corners_of(row, column), row, column);
   }
 };
 
 /// Level `level` of the workspace. Requires that it has been made.
 [[nodiscard]] LevelView view_of_level(const GroundSurfaceWorkspace& workspace,
                                       const SquareLattice& lattice, int level);
+
+/// Where the centres of all rows, and so columns, of the finest level lie in the level `level`.
+void find_steps(const LevelView& view, const SquareLattice& lattice, int level,
+                std::vector<LevelStep>& step);
+
+/// From this level on, of 3.2 m, all that is near a place may be one ring on a bush. Cells beside
+/// something tall lift these levels by less than rough ground may, and count for less where they
+/// do. If they are ground after all, finer levels follow it.
+inline constexpr int kCoarseLevel = 3;
+
+/// Takes over what the cells say of the ground, for a level and the finer ones down to the next
+/// call or to `kCoarseLevel`, whichever comes first.
+void hear_cells(const GroundSurface& surface, int level, GroundSurfaceWorkspace& workspace);
 
 /// Makes the coarsest level from the plane.
 void start_levels(const GroundSurface& surface, GroundSurfaceWorkspace& workspace);

@@ -29,9 +29,20 @@ class CellBits {
   /// unmark the cell that it is called with.
   template <class F>
   void for_marked_around(CellIndex at, int reach, F&& f) const {
+    for_marked_in_rows(at, reach, at.l + reach, f);
+  }
+  /// The same without the rows behind, for cells that are marked row by row.
+  template <class F>
+  void for_marked_before(CellIndex at, int reach, F&& f) const {
+    for_marked_in_rows(at, reach, at.l, f);
+  }
+
+ private:
+  template <class F>
+  void for_marked_in_rows(CellIndex at, int reach, int last_l, F& f) const {
     const int first_w = std::max(at.w - reach, 0);
     const int last_w = std::min(at.w + reach, cells_w_ - 1);
-    for (int l = std::max(at.l - reach, 0); l <= std::min(at.l + reach, cells_l_ - 1); ++l) {
+    for (int l = std::max(at.l - reach, 0); l <= std::min(last_l, cells_l_ - 1); ++l) {
       for (int w = first_w; w <= last_w; w += 64) {
         std::uint64_t bits =
             bits_from({l, w}) & (~std::uint64_t{0} >> (63 - std::min(last_w - w, 63)));
@@ -39,8 +50,6 @@ class CellBits {
       }
     }
   }
-
- private:
   [[nodiscard]] std::size_t row_of(int l) const { return static_cast<std::size_t>(l) * words_; }
   [[nodiscard]] std::uint64_t& word_of(CellIndex cell) {
     return bits_[row_of(cell.l) + static_cast<std::size_t>(cell.w) / 64];

@@ -107,6 +107,7 @@ struct DeckWorkspace {
   CellBits candidate_cells;             ///< the cells of those slots that are `candidate`
   CellBits member_cells;                ///< the cells of `members`, while they are looked at
   std::vector<std::uint8_t> candidate;  ///< per slot
+  std::vector<std::int32_t> points;     ///< above the ground in candidate slots
   std::vector<DeckLayer> all, top;      ///< per candidate slot: its points, and the highest
   std::vector<std::int32_t> members;    ///< slots of one deck
   std::vector<DeckPlane> planes;        ///< per member: the surface there

@@ -49,6 +49,8 @@ struct FaceSlopeWorkspace {
   std::vector<std::int32_t> rest;    ///< points that are not on the face
   std::vector<std::uint8_t> beyond;  ///< per point: 1: on another surface
   std::vector<FaceBeam> beams;
+  std::vector<FaceBeam> beams_by_column;  ///< while beams are sorted...
+  std::vector<std::int32_t> first_beam;   ///< ...and where those of each column begin
   std::vector<FaceRing> rings;
   std::vector<RingPart> parts;
   std::vector<std::int32_t> open_parts;  ///< per ring: its last part

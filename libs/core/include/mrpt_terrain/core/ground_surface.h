@@ -134,8 +134,8 @@ struct HeardCells {
 
 /// Between which two centres of a level the centre of a cell lies, and how far towards the second.
 struct LevelStep {
-  std::int32_t first = 0;
-  float share = 0.0F;
+  std::int32_t first;
+  float share;
 };
 
 /// Scratch memory of `find_ground_surface`.

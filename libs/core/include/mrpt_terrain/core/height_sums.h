@@ -5,42 +5,57 @@
 
 namespace mrpt_terrain {
 
+/// Four numbers that are worked on at once; on all processors with the same bits.
+typedef float FourFloats __attribute__((vector_size(4 * sizeof(float))));
+
+/// Of (x, y, z, ...): the first factors of the products xy, xz and yz, and the second ones.
+[[nodiscard]] inline FourFloats first_factors(const FourFloats& v) {
+  return FourFloats{v[0], v[2], v[2], v[3]};
+}
+[[nodiscard]] inline FourFloats second_factors(const FourFloats& v) {
+  return FourFloats{v[1], v[0], v[1], v[3]};
+}
+
 /// Sums of points about some centre, in single precision: for small neighbourhoods, where centre
 /// and points are near each other.
 struct HeightSums {
-  float n = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
+  FourFloats sum{};       ///< of x, y, z and 1
+  FourFloats squares{};   ///< of xx, yy, zz; the fourth means nothing
+  FourFloats products{};  ///< of xy, xz, yz; the fourth means nothing
 
-  void add(float px, float py, float pz) { add_weighted(px, py, pz, 1.0F); }
+  [[nodiscard]] float n() const { return sum[3]; }
 
-  /// Adds a point that counts `weight` times.
-  void add_weighted(float px, float py, float pz, float weight) {
-    const float wx = weight * px, wy = weight * py, wz = weight * pz;
-    n += weight;
-    x += wx;
-    y += wy;
-    z += wz;
-    xx += wx * px;
-    xy += wx * py;
-    yy += wy * py;
-    xz += wx * pz;
-    yz += wy * pz;
-    zz += wz * pz;
+  void add(float px, float py, float pz) { add_weighted(FourFloats{px, py, pz, 1.0F}, 1.0F); }
+
+  /// Adds a point, (x, y, z, 1), that counts `weight` times.
+  void add_weighted(const FourFloats& p, float weight) {
+    const FourFloats weighted = weight * p;
+    sum += weighted;
+    squares += weighted * p;
+    products += first_factors(weighted) * second_factors(p);
   }
 
   /// Adds sums whose centre lies at (dx, dy, dz) from this one.
   void add_shifted(const HeightSums& from, float dx, float dy, float dz) {
-    const float fx = from.x + from.n * dx, fy = from.y + from.n * dy, fz = from.z + from.n * dz;
-    n += from.n;
-    x += fx;
-    y += fy;
-    z += fz;
-    xx += from.xx + dx * (from.x + fx);
-    xy += from.xy + dx * from.y + dy * fx;
-    yy += from.yy + dy * (from.y + fy);
-    xz += from.xz + dz * from.x + dx * fz;
-    yz += from.yz + dz * from.y + dy * fz;
-    zz += from.zz + dz * (from.z + fz);
+    const FourFloats shift{dx, dy, dz, 0.0F};
+    const FourFloats shifted = from.sum + from.n() * shift;
+    sum += shifted;
+    squares += from.squares + shift * (from.sum + shifted);
+    products += from.products + first_factors(shift) * second_factors(from.sum) +
+                second_factors(shift) * first_factors(shifted);
   }
+};
+
+/// Means and covariances of at least one point, about the sums' centre.
+struct HeightMoments {
+  FourFloats mean;         ///< x, y, z; the fourth means nothing, nor do those below
+  FourFloats variances;    ///< xx, yy, zz
+  FourFloats covariances;  ///< xy, xz, yz
+
+  explicit HeightMoments(const HeightSums& s)
+      : mean(s.sum / s.n()),
+        variances(s.squares / s.n() - mean * mean),
+        covariances(s.products / s.n() - first_factors(mean) * second_factors(mean)) {}
 };
 
 /// Plane z = mean_z + gradient_x (x - mean_x) + gradient_y (y - mean_y), about the sums' centre.
@@ -59,9 +74,10 @@ struct SumsPlane {
 /// \param hold m^2, > 0: added to the variances in x and y; holds the gradient to zero in
 /// directions in which the points do not spread
 [[nodiscard]] inline SumsPlane fit_plane(const HeightSums& s, float hold) {
-  const float x = s.x / s.n, y = s.y / s.n, z = s.z / s.n;
-  const float xx = s.xx / s.n - x * x, xy = s.xy / s.n - x * y, yy = s.yy / s.n - y * y;
-  const float xz = s.xz / s.n - x * z, yz = s.yz / s.n - y * z, zz = s.zz / s.n - z * z;
+  const HeightMoments m(s);
+  const float x = m.mean[0], y = m.mean[1], z = m.mean[2];
+  const float xx = m.variances[0], yy = m.variances[1], zz = m.variances[2];
+  const float xy = m.covariances[0], xz = m.covariances[1], yz = m.covariances[2];
   const float determinant = (xx + hold) * (yy + hold) - xy * xy;
   const float gx = (xz * (yy + hold) - yz * xy) / determinant;
   const float gy = (yz * (xx + hold) - xz * xy) / determinant;
