@@ -373,6 +373,25 @@ TEST(HolesInRings, APotholeInRollingGroundIsFound) {
   EXPECT_NEAR(holes.found[0].centre.x, 3.4, 0.3);
 }
 
+// All of a hollow lies below the mean of the ground around it: as one piece, it is no hole.
+TEST(HolesInRings, APotholeInAHollowIsFound) {
+  for (const int beams : {32, 64}) {
+    for (const double radius : {2.0, 2.5, 4.0}) {
+      worlds::LidarModel model = many_rings();
+      model.beams = beams;
+      const auto hollow = [radius](double x, double y) {
+        return 0.03 * std::min(std::pow(x - 3.8, 2) + std::pow(y - 0.3, 2), radius * radius);
+      };
+      EXPECT_TRUE(holes_in_scan(scan_of(model, hollow)).found.empty()) << beams << " " << radius;
+      const Holes holes = holes_in_scan(scan_of(
+          model, [&hollow](double x, double y) { return hollow(x, y) + pothole(x, y, 3.4, 0.1); }));
+      ASSERT_EQ(holes.found.size(), 1U) << beams << " " << radius;
+      EXPECT_NEAR(holes.found[0].centre.x, 3.8, 0.3) << beams << " " << radius;
+      EXPECT_NEAR(holes.found[0].centre.y, 0.3, 0.2) << beams << " " << radius;
+    }
+  }
+}
+
 // A lane that is lower than the ground on both sides, and goes on to the left and to the right:
 // it is far longer than what is seen of it, but narrower than `widest`. What lies beyond a step
 // down, or below the edge of a terrace, has no rim behind.
