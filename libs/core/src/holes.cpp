@@ -353,6 +353,7 @@ void weigh_points(HoleCase& hole) {
   const double half = geometry.cell_size() / 2;
   const Position2 low = geometry.centre_of(box.low), high = geometry.centre_of(box.high);
   for (HolePoint& p : hole.workspace.points) {
+    if (p.zone == HoleZone::kFloor) continue;
     const double dx = std::max({low.x - half - p.x, p.x - high.x - half, 0.0});
     const double dy = std::max({low.y - half - p.y, p.y - high.y - half, 0.0});
     p.weight = static_cast<float>(1.0 / (1.0 + (dx * dx + dy * dy) / (kHalfWeight * kHalfWeight)));
@@ -581,8 +582,12 @@ void add_cells(const ElevationGrid& grid, std::vector<std::int32_t>& members,
   hole_cells.first.push_back(static_cast<std::int32_t>(hole_cells.items.size()));
 }
 
-// Finds floor, rim and depth.
-// \return false if the members as a whole are no hole: too wide, too shallow, or the rim too uneven
+// So many looks may meet no rim.
+double most_others(const HoleCase& hole) { return (1.0 - hole.params.closed) * hole.around; }
+
+// Finds floor, rim, depth and what is around.
+// \return false if the members as a whole are no hole: too wide, too shallow, the rim too uneven,
+// or ground around as low
 bool measure_hole(HoleCase& hole, HoleWindow& window) {
   if (is_too_wide(hole)) return false;
   mark_zones(hole);
@@ -591,23 +596,22 @@ bool measure_hole(HoleCase& hole, HoleWindow& window) {
   if (!measure_depth(hole)) return false;
   // What has not grown would have the same rim and depth.
   if (grow(hole) && (is_too_wide(hole) || !measure_depth(hole))) return false;
-  return hole.rim.sigma <= hole.params.rings_depth * hole.depth;
+  if (hole.rim.sigma > hole.params.rings_depth * hole.depth) return false;
+  look_around(hole);
+  return hole.others <= std::max(kFewOthers, most_others(hole));
 }
 
-// Whether what has been measured is closed and has walls.
+// Whether what has been measured is seen well enough, and has walls.
 bool is_hole(HoleCase& hole, const HoleWindow& window, HoleDescription& description) {
   const HoleCounts counts = count_points(hole);
   if (counts.floor < hole.params.least_points) return false;
-  look_around(hole);
   if (hole.is_part && hole.others > 0) return false;
-  const double most_others = (1.0 - hole.params.closed) * hole.around;
-  if (hole.others > std::max(kFewOthers, most_others)) return false;
   const int opposite = opposite_sides(hole.sides);
   if (hole.seen < hole.params.seen || opposite == 0) return false;
   RingEvidence rings;
   if (!has_walls(hole, window, counts, rings)) return false;
   if (opposite < kFewestOpposite && !show_both_sides(rings, counts)) return false;
-  if (rings.rings < 2 && hole.others > most_others) return false;
+  if (rings.rings < 2 && hole.others > most_others(hole)) return false;
   if (hole.is_part && !stands_out(hole, counts, rings)) return false;
   description = describe_hole(hole, counts, rings);
   return true;
