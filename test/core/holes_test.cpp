@@ -392,6 +392,22 @@ TEST(HolesInRings, APotholeInAHollowIsFound) {
   }
 }
 
+// The ground bends by 3 cm within half a metre. Rings that end at walls on both sides, and nothing
+// as low around, say more than that does.
+TEST(HolesInRings, UnevenGroundAroundAHoleThatIsSeenOnAllSidesIsNoReasonAgainstIt) {
+  worlds::LidarModel model = many_rings();
+  model.beams = 64;
+  const auto uneven = [](double x, double y) {
+    return 0.03 * std::sin(5.0 * x) * std::sin(6.0 * y);
+  };
+  HoleParams params;
+  params.uneven_depth = 0.0;
+  const RingScan scan = scan_of(
+      model, [&uneven](double x, double y) { return uneven(x, y) + pothole(x, y, 2.75, 0.12); });
+  EXPECT_EQ(holes_in_scan(scan, params).found.size(), 1U);
+  EXPECT_TRUE(holes_in_scan(scan_of(model, uneven), params).found.empty());
+}
+
 // A lane that is lower than the ground on both sides, and goes on to the left and to the right:
 // it is far longer than what is seen of it, but narrower than `widest`. What lies beyond a step
 // down, or below the edge of a terrace, has no rim behind.
