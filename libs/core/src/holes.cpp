@@ -64,6 +64,8 @@ constexpr int kLeastWalled = 4;
 // deeper by this share of the least depth each time, as long as they stand out by the depth of a
 // hole.
 constexpr double kDeeperStep = 1.0 / 3.0;
+// A part of a cell with cells of the whole on all sides makes so many.
+constexpr std::size_t kFewestAsWhole = 9;
 
 // Kinds of candidates.
 constexpr std::uint8_t kFloorCell = 1, kEdgeCell = 2, kDeeperCell = 3;
@@ -631,6 +633,7 @@ struct HoleSearch {
 // Makes those of the first members candidates again that lie deeper than the bar, if one of them
 // does by the depth of a hole.
 bool mark_deeper(const HoleSearch& search, std::size_t members, double bar) {
+  if (members < kFewestAsWhole) return false;
   HoleWorkspace& workspace = search.workspace;
   const auto last = workspace.members.begin() + static_cast<std::ptrdiff_t>(members);
   const auto is_deeper = [&search](double least) {
