@@ -373,6 +373,41 @@ TEST(HolesInRings, APotholeInRollingGroundIsFound) {
   EXPECT_NEAR(holes.found[0].centre.x, 3.4, 0.3);
 }
 
+// All of a hollow lies below the mean of the ground around it: as one piece, it is no hole.
+TEST(HolesInRings, APotholeInAHollowIsFound) {
+  for (const int beams : {32, 64}) {
+    for (const double radius : {2.0, 2.5, 4.0}) {
+      worlds::LidarModel model = many_rings();
+      model.beams = beams;
+      const auto hollow = [radius](double x, double y) {
+        return 0.03 * std::min(std::pow(x - 3.8, 2) + std::pow(y - 0.3, 2), radius * radius);
+      };
+      EXPECT_TRUE(holes_in_scan(scan_of(model, hollow)).found.empty()) << beams << " " << radius;
+      const Holes holes = holes_in_scan(scan_of(
+          model, [&hollow](double x, double y) { return hollow(x, y) + pothole(x, y, 3.4, 0.1); }));
+      ASSERT_EQ(holes.found.size(), 1U) << beams << " " << radius;
+      EXPECT_NEAR(holes.found[0].centre.x, 3.8, 0.3) << beams << " " << radius;
+      EXPECT_NEAR(holes.found[0].centre.y, 0.3, 0.2) << beams << " " << radius;
+    }
+  }
+}
+
+// The ground bends by 3 cm within half a metre. Rings that end at walls on both sides, and nothing
+// as low around, say more than that does.
+TEST(HolesInRings, UnevenGroundAroundAHoleThatIsSeenOnAllSidesIsNoReasonAgainstIt) {
+  worlds::LidarModel model = many_rings();
+  model.beams = 64;
+  const auto uneven = [](double x, double y) {
+    return 0.03 * std::sin(5.0 * x) * std::sin(6.0 * y);
+  };
+  HoleParams params;
+  params.uneven_depth = 0.0;
+  const RingScan scan = scan_of(
+      model, [&uneven](double x, double y) { return uneven(x, y) + pothole(x, y, 2.75, 0.12); });
+  EXPECT_EQ(holes_in_scan(scan, params).found.size(), 1U);
+  EXPECT_TRUE(holes_in_scan(scan_of(model, uneven), params).found.empty());
+}
+
 // A lane that is lower than the ground on both sides, and goes on to the left and to the right:
 // it is far longer than what is seen of it, but narrower than `widest`. What lies beyond a step
 // down, or below the edge of a terrace, has no rim behind.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 
 #include "lanes.h"
 #include "wide_registers.h"
@@ -158,12 +159,20 @@ void sum_for_bend(const RimPoints& points, PowerSums& sums) {
   sums.points = total(count);
 }
 
+/// Sums over points about a surface.
+struct SpreadSums {
+  double squares = 0.0, weights = 0.0;  ///< weighted squares of depths, and the weights
+  double count = 0.0;
+  double squares_above = 0.0, weights_above = 0.0;  ///< of the points that are not below it
+};
+
 // Measures how far all points lie below the surface, which has z = 0 at the origin but for
-// `height`, and sums up the weighted squares of those within the band, their weights and number.
+// `height`, and sums up those within the band.
 MRPT_TERRAIN_WIDE_REGISTERS
 void sum_squares(const RimSurface& rim, double height, double band, RimPoints& points,
-                 double& squares, double& weights, double& count) {
-  DoubleLanes square_lanes = {}, weight_lanes = {}, count_lanes = {};
+                 SpreadSums& sums) {
+  const DoubleLanes zero{};
+  DoubleLanes squares = {}, weights = {}, count = {}, squares_above = {}, weights_above = {};
   for (std::size_t i = 0; i < points.size; i += kCellLanes) {
     DoubleLanes u, v, z, low, w;
     load_rim(points, i, u, v, z);
@@ -171,13 +180,18 @@ void sum_squares(const RimSurface& rim, double height, double band, RimPoints& p
     low += height;
     std::memcpy(points.low.data() + i, &low, sizeof(low));
     weights_within(points, i, band, low, w);
-    square_lanes += w * low * low;
-    weight_lanes += w;
-    count_weights(w, count_lanes);
+    squares += w * low * low;
+    weights += w;
+    count_weights(w, count);
+    keep_up_to(low, zero, w);
+    squares_above += w * low * low;
+    weights_above += w;
   }
-  squares = total(square_lanes);
-  weights = total(weight_lanes);
-  count = total(count_lanes);
+  sums.squares = total(squares);
+  sums.weights = total(weights);
+  sums.count = total(count);
+  sums.squares_above = total(squares_above);
+  sums.weights_above = total(weights_above);
 }
 
 // The surface of least squares through the points of the sums.
@@ -225,11 +239,20 @@ bool fit_bend(const RimPoints& points, RimSurface& rim, double& height) {
   return solve<6>(sums, rim, height);
 }
 
-double spread_of(const RimSurface& rim, double height, double band, int terms, RimPoints& points) {
-  double squares = 0.0, weights = 0.0, n = 0.0;
-  sum_squares(rim, height, band, points, squares, weights, n);
-  if (n <= terms) return 0.0;
-  return std::sqrt(squares / (weights * (1.0 - terms / n)));
+/// Standard deviation of the points from the surface, metres.
+struct RimSpread {
+  double all = 0.0, above = 0.0;
+};
+
+RimSpread spread_of(const RimSurface& rim, double height, double band, int terms,
+                    RimPoints& points) {
+  SpreadSums sums;
+  sum_squares(rim, height, band, points, sums);
+  if (sums.count <= terms) return {};
+  const double free = 1.0 - terms / sums.count;
+  const double above = std::max(sums.weights_above, std::numeric_limits<double>::min());
+  return {std::sqrt(sums.squares / (sums.weights * free)),
+          std::sqrt(sums.squares_above / (above * free))};
 }
 
 // Puts the origin of the surface into the mean of the points; returns how many are in cells away
@@ -275,7 +298,7 @@ bool same(const RimSurface& a, const RimSurface& b) {
 
 }  // namespace
 
-bool fit_rim(const std::vector<HolePoint>& points, double low, RimPoints& scratch,
+bool fit_rim(const std::vector<HolePoint>& points, double low, bool from_above, RimPoints& scratch,
              RimSurface& rim) {
   const bool away_only = start(points, rim) >= kFewestRimPoints;
   take_around(points, rim, away_only, scratch);
@@ -289,8 +312,11 @@ bool fit_rim(const std::vector<HolePoint>& points, double low, RimPoints& scratc
     if (changed || round == kPlaneRounds) {
       if (!(plane ? fit_plane(scratch, rim, height) : fit_bend(scratch, rim, height))) return false;
     }
-    rim.sigma = spread_of(rim, height, band, plane ? 3 : 6, scratch);
-    band = std::clamp(kOutlier * rim.sigma, std::min(kLeastBand, low), low);
+    const RimSpread spread = spread_of(rim, height, band, plane ? 3 : 6, scratch);
+    rim.sigma = spread.all;
+    // Walls of the hole that count would hold the band open to themselves.
+    const double sigma = from_above ? std::min(spread.all, spread.above) : spread.all;
+    band = std::clamp(kOutlier * sigma, std::min(kLeastBand, low), low);
     // The same points again: the other rounds would change nothing.
     if (!plane && same(rim, before) && height == height_before && band == band_before) break;
   }

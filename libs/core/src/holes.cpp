@@ -60,8 +60,15 @@ constexpr double kBothEnds = 0.8;
 constexpr double kLeastTrace = 1.5;
 constexpr int kLeastWalled = 4;
 
+// Low ground that is no hole as a whole may have one in it. Parts of it are looked at that lie
+// deeper by this share of the least depth each time, as long as they stand out by the depth of a
+// hole.
+constexpr double kDeeperStep = 1.0 / 3.0;
+// A part of a cell with cells of the whole on all sides makes so many.
+constexpr std::size_t kFewestAsWhole = 9;
+
 // Kinds of candidates.
-constexpr std::uint8_t kFloorCell = 1, kEdgeCell = 2;
+constexpr std::uint8_t kFloorCell = 1, kEdgeCell = 2, kDeeperCell = 3;
 
 struct RimLattice {
   int side;
@@ -218,6 +225,7 @@ struct HoleCase {
   const HoleParams& params;
   FieldCells& cells;
   HoleWorkspace& workspace;
+  bool is_part;  // of low ground that is no hole as a whole
   RimSurface rim;
   double depth = 0.0;
   unsigned sides = 0;          // bit per direction (row by row): rim is seen there
@@ -347,6 +355,7 @@ void weigh_points(HoleCase& hole) {
   const double half = geometry.cell_size() / 2;
   const Position2 low = geometry.centre_of(box.low), high = geometry.centre_of(box.high);
   for (HolePoint& p : hole.workspace.points) {
+    if (p.zone == HoleZone::kFloor) continue;
     const double dx = std::max({low.x - half - p.x, p.x - high.x - half, 0.0});
     const double dy = std::max({low.y - half - p.y, p.y - high.y - half, 0.0});
     p.weight = static_cast<float>(1.0 / (1.0 + (dx * dx + dy * dy) / (kHalfWeight * kHalfWeight)));
@@ -356,7 +365,8 @@ void weigh_points(HoleCase& hole) {
 // Fits the rim, and measures the depth that a fifth of the floor's points exceed.
 bool measure_depth(HoleCase& hole) {
   weigh_points(hole);
-  if (!fit_rim(hole.workspace.points, hole.params.least_depth, hole.workspace.rim_points, hole.rim))
+  if (!fit_rim(hole.workspace.points, hole.params.least_depth, hole.input.origins.known(),
+               hole.workspace.rim_points, hole.rim))
     return false;
   std::vector<float>& depths = hole.workspace.values;
   depths.clear();
@@ -494,6 +504,18 @@ bool rings_tell(const HoleCase& hole, const HoleCounts& counts) {
   return hole.input.origins.known() && counts.measured >= hole.params.least_points;
 }
 
+// Whether rings show rim on both sides of the floor, as directions do: several traces of several
+// rings end at walls at both ends.
+bool show_both_sides(const RingEvidence& rings, const HoleCounts& counts) {
+  return rings.rings >= 2 && rings.traces >= 2 && rings.strictly >= kBothEnds * counts.measured;
+}
+
+// Whether all that is seen around is higher, and rings show it on both sides: more than the low
+// places of rolling ground, and the foot of a kerb, have to show.
+bool stands_out(const HoleCase& hole, const HoleCounts& counts, const RingEvidence& rings) {
+  return hole.others == 0 && show_both_sides(rings, counts);
+}
+
 // Whether the floor ends at walls, and the rim is even enough for what shows it.
 bool has_walls(HoleCase& hole, const HoleWindow& window, const HoleCounts& counts,
                RingEvidence& rings) {
@@ -508,7 +530,7 @@ bool has_walls(HoleCase& hole, const HoleWindow& window, const HoleCounts& count
   if (even && rings.strictly >= kLeastWalled) count_oblique(rings);
   const double uneven =
       std::sqrt(std::max(0.0, hole.rim.sigma * hole.rim.sigma - rings.noise * rings.noise));
-  if (uneven > params.uneven_depth * hole.depth) return false;
+  if (uneven > params.uneven_depth * hole.depth && !stands_out(hole, counts, rings)) return false;
   if (rings.walled < kLeastWalled || rings.walled < kLeastTrace * rings.traces) return false;
   if (rings.walled < params.walled * counts.measured) return false;
   if (rings.rings >= 2) return true;
@@ -562,34 +584,101 @@ void add_cells(const ElevationGrid& grid, std::vector<std::int32_t>& members,
   hole_cells.first.push_back(static_cast<std::int32_t>(hole_cells.items.size()));
 }
 
-// Whether rings show rim on both sides of the floor, as directions do: several traces of several
-// rings end at walls at both ends.
-bool show_both_sides(const RingEvidence& rings, const HoleCounts& counts) {
-  return rings.rings >= 2 && rings.traces >= 2 && rings.strictly >= kBothEnds * counts.measured;
-}
+// So many looks may meet no rim.
+double most_others(const HoleCase& hole) { return (1.0 - hole.params.closed) * hole.around; }
 
-bool is_hole(HoleCase& hole, HoleDescription& description) {
+// Finds floor, rim, depth and what is around.
+// \return false if the members as a whole are no hole: too wide, too shallow, the rim too uneven,
+// or ground around as low
+bool measure_hole(HoleCase& hole, HoleWindow& window) {
   if (is_too_wide(hole)) return false;
   mark_zones(hole);
-  const HoleWindow window = window_around(hole);
+  window = window_around(hole);
   collect_points(hole, window);
   if (!measure_depth(hole)) return false;
   // What has not grown would have the same rim and depth.
   if (grow(hole) && (is_too_wide(hole) || !measure_depth(hole))) return false;
   if (hole.rim.sigma > hole.params.rings_depth * hole.depth) return false;
+  look_around(hole);
+  return hole.others <= std::max(kFewOthers, most_others(hole));
+}
+
+// Whether what has been measured is seen well enough, and has walls.
+bool is_hole(HoleCase& hole, const HoleWindow& window, HoleDescription& description) {
   const HoleCounts counts = count_points(hole);
   if (counts.floor < hole.params.least_points) return false;
-  look_around(hole);
-  const double most_others = (1.0 - hole.params.closed) * hole.around;
-  if (hole.others > std::max(kFewOthers, most_others)) return false;
+  if (hole.is_part && hole.others > 0) return false;
   const int opposite = opposite_sides(hole.sides);
   if (hole.seen < hole.params.seen || opposite == 0) return false;
   RingEvidence rings;
   if (!has_walls(hole, window, counts, rings)) return false;
   if (opposite < kFewestOpposite && !show_both_sides(rings, counts)) return false;
-  if (rings.rings < 2 && hole.others > most_others) return false;
+  if (rings.rings < 2 && hole.others > most_others(hole)) return false;
+  if (hole.is_part && !stands_out(hole, counts, rings)) return false;
   description = describe_hole(hole, counts, rings);
   return true;
+}
+
+/// All that the search changes.
+struct HoleSearch {
+  const HoleInput& input;
+  const HoleParams& params;
+  HoleWorkspace& workspace;
+  FieldCells& cells;
+  GroundSegmentation& ground;
+  std::vector<HoleDescription>& holes;
+  IndexRows& hole_cells;
+};
+
+// Makes those of the first members candidates again that lie deeper than the bar, if one of them
+// does by the depth of a hole.
+bool mark_deeper(const HoleSearch& search, std::size_t members, double bar) {
+  if (members < kFewestAsWhole) return false;
+  HoleWorkspace& workspace = search.workspace;
+  const auto last = workspace.members.begin() + static_cast<std::ptrdiff_t>(members);
+  const auto is_deeper = [&search](double least) {
+    return [&search, least](std::int32_t member) {
+      return depth_of(search.cells, static_cast<std::size_t>(member)) >= least;
+    };
+  };
+  if (std::none_of(workspace.members.begin(), last, is_deeper(bar + search.params.mean_depth)))
+    return false;
+  std::for_each(workspace.members.begin(), last, [&](std::int32_t member) {
+    if (is_deeper(bar)(member)) workspace.candidate[static_cast<std::size_t>(member)] = kDeeperCell;
+  });
+  return true;
+}
+
+void add_hole(HoleSearch& search, const HoleDescription& description) {
+  search.holes.push_back(description);
+  for (const std::int32_t member : search.workspace.members)
+    search.ground.rule[static_cast<std::size_t>(member)] = GroundRule::kLow;
+  add_cells(search.input.grid, search.workspace.members, search.hole_cells);
+}
+
+// Looks at the candidates of a kind, cells at least `bar` below the rim.
+// \return whether there are deeper parts of what is no hole as a whole
+bool look_at_candidates(HoleSearch& search, std::uint8_t kind, double bar) {
+  HoleWorkspace& workspace = search.workspace;
+  const ElevationGrid& grid = search.input.grid;
+  const double deeper = bar + kDeeperStep * search.params.least_depth;
+  bool any_deeper = false;
+  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
+    if (workspace.candidate[slot] != kind) continue;
+    collect_members(grid, slot, workspace);
+    const std::size_t members = workspace.members.size();
+    HoleCase hole{
+        search.input, search.params, search.cells, workspace, bar > search.params.least_depth, {}};
+    HoleWindow window;
+    HoleDescription description;
+    const bool measured = measure_hole(hole, window);
+    const bool found = measured && is_hole(hole, window, description);
+    clear_zones(hole);
+    leave_out(grid, workspace);
+    if (found) add_hole(search, description);
+    if (!measured && kind == kFloorCell) any_deeper |= mark_deeper(search, members, deeper);
+  }
+  return any_deeper;
 }
 
 }  // namespace
@@ -602,22 +691,12 @@ void find_holes(const HoleInput& input, const HoleParams& params, HoleWorkspace&
   take_back_stray_cells(input, params.least_points, cells, workspace, ground);
   measure_rim(input.field, workspace);
   mark_candidates(input, params, workspace, cells);
-  for (const std::uint8_t kind : {kFloorCell, kEdgeCell}) {
-    for (std::size_t slot = 0; slot < input.grid.observed(); ++slot) {
-      if (workspace.candidate[slot] != kind) continue;
-      collect_members(input.grid, slot, workspace);
-      HoleCase hole{input, params, cells, workspace, {}};
-      HoleDescription description;
-      const bool found = is_hole(hole, description);
-      clear_zones(hole);
-      leave_out(input.grid, workspace);
-      if (!found) continue;
-      holes.push_back(description);
-      for (const std::int32_t member : workspace.members)
-        ground.rule[static_cast<std::size_t>(member)] = GroundRule::kLow;
-      add_cells(input.grid, workspace.members, hole_cells);
-    }
+  HoleSearch search{input, params, workspace, cells, ground, holes, hole_cells};
+  for (double bar = params.least_depth; look_at_candidates(search, kFloorCell, bar);
+       bar += kDeeperStep * params.least_depth) {
+    std::replace(workspace.candidate.begin(), workspace.candidate.end(), kDeeperCell, kFloorCell);
   }
+  look_at_candidates(search, kEdgeCell, params.least_depth);
 }
 
 }  // namespace mrpt_terrain
