@@ -291,6 +291,30 @@ TEST(GroundSurface, TheGroundGoesOnBelowAPatchOfGrass) {
   }
 }
 
+// A bed of gravel, such as between the rails of a tram, scatters as grass does and is the ground;
+// so is a lawn of this height. Grass that is higher stands on it. `spread` is that of the heights.
+TEST(GroundSurface, LooseBedsAreFollowedUpToTheirRise) {
+  const auto height_in_bed = [](double height, double spread, double loose_rise) {
+    const auto is_inside = [](double x, double y) {
+      return x > 3.0 && x < 7.0 && std::abs(y) < 2.0;
+    };
+    Points points = worlds::ring_scan(worlds::coarse_rings(32), 0.81, [&](double x, double y) {
+      return is_inside(x, y) ? height : 0.0;
+    });
+    RandomGenerator random(4);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!is_inside(double{points.x[i]}, double{points.y[i]})) continue;
+      points.z[i] += static_cast<float>(spread * (random.uniform() - 0.5));
+    }
+    GroundSurfaceParams params;
+    params.loose_rise = loose_rise;
+    return double{surface_of(points, params).height_at(5.0F, 0.0F)};
+  };
+  EXPECT_NEAR(height_in_bed(0.06, 0.06, 0.08), 0.06, 0.01);
+  EXPECT_LT(height_in_bed(0.15, 0.1, 0.08), 0.06);
+  EXPECT_GT(height_in_bed(0.15, 0.1, 10.0), 0.12);
+}
+
 // Where there is nothing but grass it is the ground: the reference keeps to its low points. 0.1 m
 // thick, beams come through it by chance only beyond a few metres.
 TEST(GroundSurface, AMeadowIsItsOwnGround) {
