@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
+#include "allocation_counter.h"
 #include "mrpt_terrain/core/random.h"
 
 namespace mrpt_terrain {
@@ -18,6 +21,7 @@ struct Sides {
   std::vector<DeckSidePoint> points;
   std::vector<DeckSide> found;
   RandomGenerator random{3};
+  std::int32_t next = 0;  ///< number of a point
 
   /// `count` points evenly from (x0, y0) to (x1, y1), up to `off` metres to both sides.
   void add(std::int32_t deck, double x0, double y0, double x1, double y1, int count,
@@ -25,7 +29,8 @@ struct Sides {
     const double length = std::hypot(x1 - x0, y1 - y0);
     for (int k = 0; k < count; ++k) {
       const double t = (k + 0.5) / count, e = off * (2.0 * random.uniform() - 1.0);
-      points.push_back({deck, static_cast<float>(x0 + t * (x1 - x0) - e * (y1 - y0) / length),
+      points.push_back({deck, next++,
+                        static_cast<float>(x0 + t * (x1 - x0) - e * (y1 - y0) / length),
                         static_cast<float>(y0 + t * (y1 - y0) + e * (x1 - x0) / length)});
     }
   }
@@ -101,10 +106,21 @@ TEST(DeckSides, ScatteredPointsAreNone) {
   Sides sides;
   for (int k = 0; k < 300; ++k) {
     const double x = sides.random.uniform(), y = sides.random.uniform();
-    sides.points.push_back({0, static_cast<float>(x), static_cast<float>(y)});
+    sides.points.push_back({0, k, static_cast<float>(x), static_cast<float>(y)});
   }
   sides.find();
   EXPECT_TRUE(sides.found.empty());
+}
+
+TEST(DeckSides, UsedMemoryIsEnough) {
+  Sides sides;
+  sides.add(3, 0.0, 0.0, 1.5, 0.0, 40, 0.01);
+  sides.add(1, 0.0, 1.0, 0.0, 2.5, 40, 0.01);
+  sides.find();
+  ASSERT_EQ(sides.found.size(), 2U);
+  const std::size_t before = bench::allocations();
+  sides.find();
+  EXPECT_EQ(bench::allocations(), before);
 }
 
 TEST(DeckSides, FewPointsAreNone) {

@@ -79,7 +79,8 @@ void sort_deck_points(const PointsView& scan, const FieldPoints& points,
     const bool is_above = support[i] == Support::kAbove;
     const DeckPlane& plane = cells.deck_plane[deck_cell];
     const float below = plane.at(scan.x[i], scan.y[i]) - scan.z[i];
-    const DeckSidePoint side_point{cells.deck[deck_cell], scan.x[i], scan.y[i]};
+    const DeckSidePoint side_point{cells.deck[deck_cell], static_cast<std::int32_t>(i), scan.x[i],
+                                   scan.y[i]};
     if (deck_cell != slot) {
       if (is_above && below > side) workspace.side_points.push_back(side_point);
       continue;

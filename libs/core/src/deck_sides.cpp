@@ -174,8 +174,9 @@ void find_sides_of_deck(PointRange points, float reach, std::vector<DeckSide>& s
 void find_deck_sides(float reach, std::vector<DeckSidePoint>& points,
                      std::vector<DeckSide>& sides) {
   sides.clear();
-  std::stable_sort(points.begin(), points.end(),
-                   [](const DeckSidePoint& a, const DeckSidePoint& b) { return a.deck < b.deck; });
+  std::sort(points.begin(), points.end(), [](const DeckSidePoint& a, const DeckSidePoint& b) {
+    return a.deck != b.deck ? a.deck < b.deck : a.point < b.point;
+  });
   for (PointRange of_deck{points.begin(), points.begin()}; of_deck.first != points.end();
        of_deck.first = of_deck.last) {
     const std::int32_t deck = of_deck.first->deck;

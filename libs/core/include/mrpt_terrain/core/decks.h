@@ -84,6 +84,7 @@ struct DeckLayer {
 /// A point of the side of a deck, seen from above, metres.
 struct DeckSidePoint {
   std::int32_t deck = -1;
+  std::int32_t point = -1;  ///< its number in the scan
   float x = 0.0F, y = 0.0F;
 };
 
