@@ -112,6 +112,20 @@ TEST(DeckSides, ScatteredPointsAreNone) {
   EXPECT_TRUE(sides.found.empty());
 }
 
+// Dense points say no more than some of them; neither do they take the place of other decks'
+// points.
+TEST(DeckSides, ManyPointsAreThinnedOut) {
+  Sides sides;
+  sides.add(0, 0.0, 0.0, 4.0, 0.0, 20000, 0.01);
+  sides.add(0, 0.0, 0.0, 0.0, 2.0, 10000, 0.01);
+  sides.add(1, 0.0, 5.0, 1.0, 5.0, 20, 0.01);
+  sides.find();
+  EXPECT_EQ(sides.found.size(), 3U);
+  EXPECT_TRUE(sides.on(0, 3.9, 0.0));
+  EXPECT_TRUE(sides.on(0, 0.0, 1.9));
+  EXPECT_TRUE(sides.on(1, 0.5, 5.0));
+}
+
 TEST(DeckSides, UsedMemoryIsEnough) {
   Sides sides;
   sides.add(3, 0.0, 0.0, 1.5, 0.0, 40, 0.01);

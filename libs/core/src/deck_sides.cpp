@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "mrpt_terrain/core/random.h"
 
@@ -26,8 +27,9 @@ constexpr float kLeastBeyond = 0.2F, kMostBeyond = 3.0F;
 constexpr float kDeviations = 2.0F;
 // No line is better known than as one of points that scatter by this, metres.
 constexpr float kLeastSigma = 0.005F;
-// So many sides of a deck are looked for.
+// So many sides of a deck are looked for, in about so many of its points at most.
 constexpr int kMostSides = 8;
+constexpr std::size_t kMostPoints = 1024;
 
 struct PointRange {
   std::vector<DeckSidePoint>::iterator first, last;  // the last one is behind
@@ -157,6 +159,16 @@ bool settle_side(PointRange stretch, PointRange points, float reach, DeckSide& s
   return true;
 }
 
+// Keeps every n-th point, so that no deck takes long.
+PointRange thin_out(PointRange points) {
+  const std::size_t step = (points.size() + kMostPoints - 1) / kMostPoints;
+  if (step < 2) return points;
+  auto kept = points.begin();
+  for (std::size_t i = 0; i < points.size(); i += step)
+    *kept++ = points.begin()[static_cast<std::ptrdiff_t>(i)];
+  return {points.begin(), kept};
+}
+
 void find_sides_of_deck(PointRange points, float reach, std::vector<DeckSide>& sides) {
   RandomGenerator random(1);
   for (int k = 0; k < kMostSides && points.size() >= kFewest; ++k) {
@@ -182,7 +194,7 @@ void find_deck_sides(float reach, std::vector<DeckSidePoint>& points,
     const std::int32_t deck = of_deck.first->deck;
     of_deck.last = std::find_if(of_deck.first, points.end(),
                                 [deck](const DeckSidePoint& p) { return p.deck != deck; });
-    find_sides_of_deck(of_deck, reach, sides);
+    find_sides_of_deck(thin_out(of_deck), reach, sides);
   }
 }
 

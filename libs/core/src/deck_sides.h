@@ -12,7 +12,7 @@ namespace mrpt_terrain {
 /// each deck the line through most of them is one, along a stretch without long gaps; then that of
 /// those left over, and so on. Where points lie beside the line as they do on it, it is none.
 /// \param reach metres: how far points may be off their line
-/// \param[in,out] points of sides; afterwards sorted by deck
+/// \param[in,out] points of sides; used up
 /// \param[out] sides sorted by deck
 void find_deck_sides(float reach, std::vector<DeckSidePoint>& points, std::vector<DeckSide>& sides);
 
