@@ -636,15 +636,15 @@ bool mark_deeper(const HoleSearch& search, std::size_t members, double bar) {
   if (members < kFewestAsWhole) return false;
   HoleWorkspace& workspace = search.workspace;
   const auto last = workspace.members.begin() + static_cast<std::ptrdiff_t>(members);
-  const auto is_deeper = [&search](double least) {
-    return [&search, least](std::int32_t member) {
-      return depth_of(search.cells, static_cast<std::size_t>(member)) >= least;
-    };
+  const auto depth = [&search](std::int32_t member) {
+    return depth_of(search.cells, static_cast<std::size_t>(member));
   };
-  if (std::none_of(workspace.members.begin(), last, is_deeper(bar + search.params.mean_depth)))
+  const double deepest = bar + search.params.mean_depth;
+  if (std::none_of(workspace.members.begin(), last,
+                   [&](std::int32_t member) { return depth(member) >= deepest; }))
     return false;
   std::for_each(workspace.members.begin(), last, [&](std::int32_t member) {
-    if (is_deeper(bar)(member)) workspace.candidate[static_cast<std::size_t>(member)] = kDeeperCell;
+    if (depth(member) >= bar) workspace.candidate[static_cast<std::size_t>(member)] = kDeeperCell;
   });
   return true;
 }

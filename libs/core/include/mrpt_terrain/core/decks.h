@@ -139,8 +139,9 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
 /// Makes the points on decks ground: those that lie up to `side` below or above the surface, but
 /// for those of the deck's sides. These have points further below the surface as near as that
 /// beside them, or lie on the line of a side seen from above (deck_sides.h); points of the ground
-/// on such a line, well above its foot, are above. \param[in,out] support of the points, in the
-/// order of the scan
+/// on such a line, well above its foot, are above.
+///
+/// \param[in,out] support of the points, in the order of the scan
 void label_deck_points(const PointsView& scan, const FieldPoints& points,
                        const PointSlots& point_slots, const ElevationGrid& grid,
                        const FieldCells& cells, const DeckParams& params, DeckWorkspace& workspace,
