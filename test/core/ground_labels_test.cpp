@@ -58,11 +58,11 @@ Labelled labelled(const HeightsInCells& heights, const GroundLabelParams& params
 constexpr float kHere = 0.2F;
 const float kDistance = kHere * std::sqrt(2.0F);
 
-/// `n` heights, evenly between 0.1 m and 0.5 m: something upright.
-std::vector<float> upright(int n) {
+/// `n` heights, evenly from 0.1 m on: something upright.
+std::vector<float> upright(int n, float extent = 0.4F) {
   std::vector<float> heights;
   for (int i = 0; i < n; ++i) {
-    heights.push_back(0.1F + 0.4F * (static_cast<float>(i) + 0.5F) / static_cast<float>(n));
+    heights.push_back(0.1F + extent * (static_cast<float>(i) + 0.5F) / static_cast<float>(n));
   }
   return heights;
 }
@@ -98,32 +98,35 @@ TEST(GroundLabels, BordersBelongToTheGround) {
 
 // Analytic: where n_g N(h; 0, sigma) = prior n_o / 0.4 m. Looked for by halving, with the counts of
 // a cell that has no neighbours; of the points in the 6 cm of the ground those are taken off that
-// things have there, which are as dense as in their 0.4 m, and 0.3 points are added; the spread is
-// the least that is permitted. Float logarithms: 1e-5 m.
+// things have there, which are as dense as in their extent above 0.1 m, and 0.3 points are added;
+// the spread is the least that is permitted. Float logarithms: 1e-5 m.
 TEST(GroundLabels, ThresholdIsWhereGroundAndThingsAreEquallyLikely) {
   const GroundLabelParams params;
+  const double most = params.most + params.growth * kDistance;
   for (const int ground : {1, 5, 40}) {
     for (const int object : {1, 5, 40}) {
-      const auto excess = [&](double h) {
-        const double z = h / params.sigma_min;
-        const double normal =
-            std::exp(-0.5 * z * z) / (params.sigma_min * std::sqrt(2.0 * worlds::kPi));
-        const double own = std::max(ground - object * 0.06 / 0.4, 0.0);
-        return (own + 0.3) * normal - params.prior * object / 0.4;
-      };
-      double low = 0.0, high = 1.0;
-      for (int k = 0; k < 40; ++k) {
-        const double middle = 0.5 * (low + high);
-        (excess(middle) > 0.0 ? low : high) = middle;
+      for (const double extent : {0.02, 0.05, 0.1, 0.4}) {
+        const auto excess = [&](double h) {
+          const double z = h / params.sigma_min;
+          const double normal =
+              std::exp(-0.5 * z * z) / (params.sigma_min * std::sqrt(2.0 * worlds::kPi));
+          const double own = std::max(ground - object * 0.06 / std::max(extent, 0.05), 0.0);
+          return (own + 0.3) * normal - params.prior * object / 0.4;
+        };
+        double low = 0.0, high = 1.0;
+        for (int k = 0; k < 40; ++k) {
+          const double middle = 0.5 * (low + high);
+          (excess(middle) > 0.0 ? low : high) = middle;
+        }
+        const Labelled labels =
+            labelled(HeightsInCells{}
+                         .add(kHere, kHere, static_cast<std::size_t>(ground), 0.0F)
+                         .add(kHere, kHere, upright(object, static_cast<float>(extent))),
+                     params);
+        EXPECT_NEAR(labels.threshold_at(kHere, kHere), std::min(std::max(low, params.least), most),
+                    1e-5)
+            << ground << " " << object << " " << extent;
       }
-      const double most = params.most + params.growth * kDistance;
-      const double expected = std::min(std::max(low, params.least), most);
-      const Labelled labels =
-          labelled(HeightsInCells{}
-                       .add(kHere, kHere, static_cast<std::size_t>(ground), 0.0F)
-                       .add(kHere, kHere, upright(object)),
-                   params);
-      EXPECT_NEAR(labels.threshold_at(kHere, kHere), expected, 1e-5) << ground << " " << object;
     }
   }
 }

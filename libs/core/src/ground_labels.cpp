@@ -13,9 +13,8 @@ namespace {
 constexpr float kGroundBand = 0.06F;                    // metres
 constexpr float kObjectLow = 0.1F, kObjectHigh = 0.5F;  // metres
 constexpr float kNeighbourShare = 0.3F;                 // of a point in a cell beside it
-// Things that stand on the ground are in its band as they are in theirs: as many of their points
-// per metre of height, which are none of the ground's.
-constexpr float kObjectInBand = kGroundBand / (kObjectHigh - kObjectLow);
+// Range of heights over which a thing is taken to be evenly spread, from kObjectLow on, metres.
+constexpr float kLeastExtent = 0.05F, kMostExtent = kObjectHigh - kObjectLow;
 // What is taken to be seen besides the points: a third of a point, and one of 2 cm spread.
 constexpr float kPriorPoints = 0.3F;
 constexpr float kPriorSigma = 0.02F;
@@ -27,7 +26,9 @@ HeightCounts count_heights(const float* height, std::size_t points) {
     const float ground = std::abs(h) < kGroundBand ? 1.0F : 0.0F;
     counts.ground += ground;
     counts.squares += ground * h * h;
-    counts.object += (h > kObjectLow) & (h < kObjectHigh) ? 1.0F : 0.0F;
+    const float object = (h > kObjectLow) & (h < kObjectHigh) ? 1.0F : 0.0F;
+    counts.object += object;
+    counts.object_heights += object * (h - kObjectLow);
   }
   return counts;
 }
@@ -40,6 +41,7 @@ HeightCounts counts_around(const CellPoints& cells, const std::vector<HeightCoun
     const float share = row == 0 && column == 0 ? 1.0F : kNeighbourShare;
     around.ground += share * from.ground;
     around.squares += share * from.squares;
+    around.object_heights += share * from.object_heights;
     around.object += share * from.object;
   });
   return around;
@@ -48,15 +50,16 @@ HeightCounts counts_around(const CellPoints& cells, const std::vector<HeightCoun
 // Height at which ground, normal about 0, and objects, even over their band, are equally dense.
 float threshold_of(const HeightCounts& counts, const GroundLabelParams& params, float most) {
   if (counts.object == 0.0F || params.prior == 0.0) return most;
+  const float extent =
+      std::clamp(2.0F * counts.object_heights / counts.object, kLeastExtent, kMostExtent);
+  const float own = std::max(counts.ground - counts.object * kGroundBand / extent, 0.0F);
   const float variance =
       (counts.squares + kPriorSigma * kPriorSigma) / (counts.ground + kPriorPoints + 1.0F);
   const float sigma = std::clamp(std::sqrt(variance), static_cast<float>(params.sigma_min),
                                  static_cast<float>(params.sigma_max));
   constexpr float kRootOfTwoPi = 2.5066283F;
-  const float own = std::max(counts.ground - kObjectInBand * counts.object, 0.0F);
   const float ground = (own + kPriorPoints) / (sigma * kRootOfTwoPi);
-  const float object =
-      static_cast<float>(params.prior) * counts.object / (kObjectHigh - kObjectLow);
+  const float object = static_cast<float>(params.prior) * counts.object / kMostExtent;
   const float height = ground > object ? sigma * std::sqrt(2.0F * std::log(ground / object)) : 0.0F;
   return std::min(most, std::max(height, static_cast<float>(params.least)));
 }

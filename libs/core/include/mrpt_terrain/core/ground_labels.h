@@ -38,9 +38,10 @@ struct GroundLabelParams {
 
 /// Points of a cell, by height.
 struct HeightCounts {
-  float ground = 0.0F;   ///< within 6 cm of the reference
-  float squares = 0.0F;  ///< sum of their squared heights, m^2
-  float object = 0.0F;   ///< 0.1 to 0.5 m above it
+  float ground = 0.0F;          ///< within 6 cm of the reference
+  float squares = 0.0F;         ///< sum of their squared heights, m^2
+  float object = 0.0F;          ///< 0.1 to 0.5 m above it
+  float object_heights = 0.0F;  ///< sum of the heights of these above 0.1 m, metres
 };
 
 /// Scratch memory of `label_by_height`.
