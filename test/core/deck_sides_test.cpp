@@ -31,7 +31,7 @@ struct Sides {
       const double t = (k + 0.5) / count, e = off * (2.0 * random.uniform() - 1.0);
       points.push_back({deck, next++,
                         static_cast<float>(x0 + t * (x1 - x0) - e * (y1 - y0) / length),
-                        static_cast<float>(y0 + t * (y1 - y0) + e * (x1 - x0) / length)});
+                        static_cast<float>(y0 + t * (y1 - y0) + e * (x1 - x0) / length), 0.0F});
     }
   }
   void find() { find_deck_sides(kReach, points, found); }
@@ -149,6 +149,70 @@ TEST(DeckSides, FewPointsAreNone) {
   sides.points.clear();
   sides.find();
   EXPECT_TRUE(sides.found.empty());
+}
+
+/// Rings on the surfaces of decks, seen from 1 m above the origin, and what is found in them.
+/// Ranges scatter by up to 2 cm.
+struct Rings {
+  std::vector<DeckSidePoint> points;
+  std::vector<DeckSide> found;
+  RandomGenerator random{5};
+
+  /// A ring whose beams fall by `fall` per metre, every 0.2 deg up to `aside` radians to both
+  /// sides; `distance_of` gives the horizontal distance of what it meets at an azimuth.
+  template <class DistanceOf>
+  void add(std::int32_t deck, double fall, double aside, DistanceOf&& distance_of) {
+    for (double azimuth = -aside; azimuth <= aside; azimuth += 0.0035) {
+      const double distance = distance_of(azimuth) + 0.02 * (2.0 * random.uniform() - 1.0);
+      points.push_back({deck, static_cast<std::int32_t>(points.size()),
+                        static_cast<float>(distance * std::cos(azimuth)),
+                        static_cast<float>(distance * std::sin(azimuth)),
+                        static_cast<float>(1.0 - fall * distance)});
+    }
+  }
+  void find() { find_side_rings(kReach, points, found); }
+};
+
+/// Distance of an upright face 6 m ahead.
+double face_at(double azimuth) { return 6.0 / std::cos(azimuth); }
+
+// At its nearest, the ring meets the face 0.145 m up; 2.2 m to both sides, 0.09 m.
+TEST(SideRings, ARingAlongAnUprightFaceIsASide) {
+  Rings rings;
+  rings.add(0, 0.1425, 0.35, face_at);
+  rings.find();
+  ASSERT_EQ(rings.found.size(), 1U);
+  EXPECT_NEAR(rings.found[0].half_length, 6.0 * std::tan(0.35), 0.05);
+  EXPECT_TRUE(is_on_side(rings.found, 0, 6.0F, 2.0F, kReach));
+  EXPECT_FALSE(is_on_side(rings.found, 0, 6.05F, 2.0F, kReach));
+}
+
+TEST(SideRings, ARingOnALevelTopIsNone) {
+  Rings rings;
+  rings.add(0, 0.1425, 0.35, [](double) { return 6.0; });
+  rings.find();
+  EXPECT_TRUE(rings.found.empty());
+}
+
+// Straight and falling to both ends as well, but there is one behind the other: a ridge.
+TEST(SideRings, RingsBehindEachOtherAreNone) {
+  Rings rings;
+  for (const double behind : {0.0, 0.2, 0.4})
+    rings.add(0, 0.855 / (6.0 + behind), 0.35,
+              [behind](double azimuth) { return (6.0 + behind) / std::cos(azimuth); });
+  rings.find();
+  EXPECT_TRUE(rings.found.empty());
+}
+
+// Those that were found before stay, and all are sorted by deck.
+TEST(SideRings, AreAddedToTheSidesThatAreKnown) {
+  Rings rings;
+  rings.found = {{0, 1.0F, 0.0F}, {2, 2.0F, 0.0F}};
+  rings.add(1, 0.1425, 0.35, face_at);
+  rings.find();
+  ASSERT_EQ(rings.found.size(), 3U);
+  for (std::int32_t deck = 0; deck < 3; ++deck)
+    EXPECT_EQ(rings.found[static_cast<std::size_t>(deck)].deck, deck);
 }
 
 }  // namespace

@@ -71,6 +71,7 @@ void sort_deck_points(const PointsView& scan, const FieldPoints& points,
   workspace.on_deck.clear();
   workspace.low_side.clear();
   workspace.side_points.clear();
+  workspace.surface_points.clear();
   for (std::size_t i = 0; i < point_slots.size(); ++i) {
     if (point_slots[i] < 0 || points.height[i] < kLeastSide) continue;
     const auto slot = static_cast<std::size_t>(point_slots[i]);
@@ -80,7 +81,7 @@ void sort_deck_points(const PointsView& scan, const FieldPoints& points,
     const DeckPlane& plane = cells.deck_plane[deck_cell];
     const float below = plane.at(scan.x[i], scan.y[i]) - scan.z[i];
     const DeckSidePoint side_point{cells.deck[deck_cell], static_cast<std::int32_t>(i), scan.x[i],
-                                   scan.y[i]};
+                                   scan.y[i], scan.z[i]};
     if (deck_cell != slot) {
       if (is_above && below > side) workspace.side_points.push_back(side_point);
       continue;
@@ -91,8 +92,10 @@ void sort_deck_points(const PointsView& scan, const FieldPoints& points,
       if (support[i] == Support::kGround && points.height[i] >= kSideFoot)
         workspace.low_side.push_back(static_cast<std::int32_t>(i));
     }
-    if (is_above && std::abs(below) <= side)
+    if (is_above && std::abs(below) <= side) {
       workspace.on_deck.push_back(static_cast<std::int32_t>(i));
+      workspace.surface_points.push_back(side_point);
+    }
   }
 }
 
@@ -108,6 +111,7 @@ void label_deck_points(const PointsView& scan, const FieldPoints& points,
   find_deck_cells(grid, cells, workspace.deck_cell);
   sort_deck_points(scan, points, point_slots, cells, side, support, map, workspace);
   find_deck_sides(side, workspace.side_points, workspace.sides);
+  find_side_rings(side, workspace.surface_points, workspace.sides);
   const double part = grid.geometry.cell_size() / SideMap::kParts;
   const int reach = std::clamp(static_cast<int>(params.side / part + 0.5), 1, SideMap::kParts);
   const auto on_side = [&](std::size_t i) {

@@ -30,6 +30,18 @@ constexpr float kLeastSigma = 0.005F;
 // So many sides of a deck are looked for, in about so many of its points at most.
 constexpr int kMostSides = 8;
 constexpr std::size_t kMostPoints = 1024;
+// The same for rings that run along a side.
+constexpr int kMostRings = 4;
+constexpr std::size_t kMostRingPoints = 256;
+// Rings on sides have so many points at least, and are lower at both ends than in between by this,
+// metres...
+constexpr std::size_t kFewestOfRing = 12;
+constexpr float kLeastFall = 0.02F;
+// ...and by more than they bend seen from above, by this factor: faces are steeper than 63 deg...
+constexpr float kSteepFace = 2.0F;
+// ...and this share of the surface up to so far beside, metres, is theirs: rings that cross a ridge
+// are straight and fall to both ends, too, but one behind the other.
+constexpr float kStripOfRing = 0.6F, kAlone = 0.8F;
 
 struct PointRange {
   std::vector<DeckSidePoint>::iterator first, last;  // the last one is behind
@@ -131,37 +143,83 @@ Spread spread_of(const DeckSide& line, PointRange points, float reach) {
   return spread;
 }
 
-// Whether most of what lies in the strip along a side lies on its line.
-bool is_sharp(const DeckSide& side, PointRange points, float reach) {
-  std::size_t on = 0, strip = 0;
+// Moves the middle of a line to that of its points, and gives it their length.
+void lay_along(const Spread& spread, DeckSide& side) {
+  const float middle = 0.5F * (spread.low + spread.high);
+  side.x += middle * side.along_x;
+  side.y += middle * side.along_y;
+  side.half_length = 0.5F * (spread.high - spread.low);
+}
+
+// Whether a share of what lies in the strip along a side, up to `strip` metres off, is on its line.
+bool has_most_of_strip(const DeckSide& side, PointRange points, float reach, float strip,
+                       float share) {
+  std::size_t on = 0, all = 0;
   for (const DeckSidePoint& p : points) {
     if (std::abs(side.along(p.x, p.y)) > side.half_length) continue;
     const float across = std::abs(side.across(p.x, p.y));
     on += across <= reach ? 1U : 0U;
-    strip += across <= kStrip * reach ? 1U : 0U;
+    all += across <= strip ? 1U : 0U;
   }
-  return static_cast<float>(on) >= kSharp * static_cast<float>(strip);
+  return static_cast<float>(on) >= share * static_cast<float>(all);
 }
 
 // Makes a side of the points of a stretch, if it is one.
+// \param points that are in no stretch yet
 bool settle_side(PointRange stretch, PointRange points, float reach, DeckSide& side) {
   if (stretch.size() < kFewest) return false;
   side = fit_line(stretch);
   const Spread spread = spread_of(side, stretch, reach);
-  side.half_length = 0.5F * (spread.high - spread.low);
+  lay_along(spread, side);
   if (side.half_length < 0.5F * kShortest) return false;
-  const float middle = 0.5F * (spread.low + spread.high);
-  side.x += middle * side.along_x;
-  side.y += middle * side.along_y;
-  if (!is_sharp(side, points, reach)) return false;
+  if (!has_most_of_strip(side, points, reach, kStrip * reach, kSharp)) return false;
   side.half_length =
       std::clamp(spread.known, side.half_length + kLeastBeyond, side.half_length + kMostBeyond);
   return true;
 }
 
+// Bend of the parabola through values over the points of a line, about the middle of which places
+// along it are taken: what its middle is above the ends of the line.
+template <class ValueOf>
+float bend_of(const DeckSide& line, PointRange points, float length, ValueOf&& value_of) {
+  float n = 0.0F, squares = 0.0F, cubes = 0.0F;
+  for (const DeckSidePoint& p : points) {
+    const float t = line.along(p.x, p.y);
+    n += 1.0F;
+    squares += t * t;
+    cubes += t * t * t;
+  }
+  float product = 0.0F, norm = 0.0F;
+  for (const DeckSidePoint& p : points) {
+    const float t = line.along(p.x, p.y);
+    // t^2 without what a straight line explains of it.
+    const float bent = t * t - squares / n - t * cubes / squares;
+    product += bent * value_of(p);
+    norm += bent * bent;
+  }
+  return -0.25F * length * length * product / norm;
+}
+
+// Makes a side of a stretch of the surface, if it is a ring alone that runs along an upright face.
+// \param points of the whole surface
+bool settle_ring(PointRange stretch, PointRange points, float reach, DeckSide& side) {
+  if (stretch.size() < kFewestOfRing) return false;
+  side = fit_line(stretch);
+  const Spread spread = spread_of(side, stretch, reach);
+  const float length = spread.high - spread.low;
+  const float z = stretch.begin()->z;
+  const float fall =
+      bend_of(side, stretch, length, [z](const DeckSidePoint& p) { return p.z - z; });
+  const float bend = bend_of(side, stretch, length,
+                             [&side](const DeckSidePoint& p) { return side.across(p.x, p.y); });
+  if (!(fall >= kLeastFall && fall >= kSteepFace * std::abs(bend))) return false;
+  lay_along(spread, side);
+  return has_most_of_strip(side, points, reach, kStripOfRing, kAlone);
+}
+
 // Keeps every n-th point, so that no deck takes long.
-PointRange thin_out(PointRange points) {
-  const std::size_t step = (points.size() + kMostPoints - 1) / kMostPoints;
+PointRange thin_out(PointRange points, std::size_t most) {
+  const std::size_t step = (points.size() + most - 1) / most;
   if (step < 2) return points;
   auto kept = points.begin();
   for (std::size_t i = 0; i < points.size(); i += step)
@@ -169,23 +227,24 @@ PointRange thin_out(PointRange points) {
   return {points.begin(), kept};
 }
 
-void find_sides_of_deck(PointRange points, float reach, std::vector<DeckSide>& sides) {
+// Seeks up to `most` sides in the points of one deck; `settle` tells which stretches are some.
+template <class Settle>
+void find_sides_of_deck(PointRange points, int most, float reach, Settle&& settle,
+                        std::vector<DeckSide>& sides) {
   RandomGenerator random(1);
-  for (int k = 0; k < kMostSides && points.size() >= kFewest; ++k) {
+  for (int k = 0; k < most && points.size() >= kFewest; ++k) {
     DeckSide side;
     if (!find_line(points, reach, random, side)) return;
     PointRange stretch = take_stretch(side, points, reach);
     stretch = take_stretch(fit_line(stretch), points, reach);
-    if (settle_side(stretch, points, reach, side)) sides.push_back(side);
+    if (settle(stretch, points, reach, side)) sides.push_back(side);
     points.first = stretch.last;
   }
 }
 
-}  // namespace
-
-void find_deck_sides(float reach, std::vector<DeckSidePoint>& points,
-                     std::vector<DeckSide>& sides) {
-  sides.clear();
+// Calls `visit` with the points of every deck.
+template <class Visitor>
+void for_each_deck(std::vector<DeckSidePoint>& points, Visitor&& visit) {
   std::sort(points.begin(), points.end(), [](const DeckSidePoint& a, const DeckSidePoint& b) {
     return a.deck != b.deck ? a.deck < b.deck : a.point < b.point;
   });
@@ -194,8 +253,31 @@ void find_deck_sides(float reach, std::vector<DeckSidePoint>& points,
     const std::int32_t deck = of_deck.first->deck;
     of_deck.last = std::find_if(of_deck.first, points.end(),
                                 [deck](const DeckSidePoint& p) { return p.deck != deck; });
-    find_sides_of_deck(thin_out(of_deck), reach, sides);
+    visit(of_deck);
   }
+}
+
+}  // namespace
+
+void find_deck_sides(float reach, std::vector<DeckSidePoint>& points,
+                     std::vector<DeckSide>& sides) {
+  sides.clear();
+  for_each_deck(points, [&](PointRange of_deck) {
+    find_sides_of_deck(thin_out(of_deck, kMostPoints), kMostSides, reach, settle_side, sides);
+  });
+}
+
+void find_side_rings(float reach, std::vector<DeckSidePoint>& points,
+                     std::vector<DeckSide>& sides) {
+  for_each_deck(points, [&](PointRange of_deck) {
+    const PointRange all = thin_out(of_deck, kMostRingPoints);
+    const auto settle = [all](PointRange stretch, PointRange, float off, DeckSide& side) {
+      return settle_ring(stretch, all, off, side);
+    };
+    find_sides_of_deck(all, kMostRings, reach, settle, sides);
+  });
+  std::sort(sides.begin(), sides.end(),
+            [](const DeckSide& a, const DeckSide& b) { return a.deck < b.deck; });
 }
 
 bool is_on_side(const std::vector<DeckSide>& sides, std::int32_t deck, float x, float y,

@@ -85,7 +85,7 @@ struct DeckLayer {
 struct DeckSidePoint {
   std::int32_t deck = -1;
   std::int32_t point = -1;  ///< its number in the scan
-  float x = 0.0F, y = 0.0F;
+  float x = 0.0F, y = 0.0F, z = 0.0F;
 };
 
 /// An upright side of a deck, seen from above: a stretch of a line, metres.
@@ -121,7 +121,7 @@ struct DeckWorkspace {
   std::vector<std::int32_t> on_deck;    ///< points on a deck or near its edge
   std::vector<std::int32_t> low_side;   ///< points below a deck's surface that are ground so far
   std::vector<std::int32_t> deck_cell;  ///< per slot: itself or the cell of a deck beside, or -1
-  std::vector<DeckSidePoint> side_points;
+  std::vector<DeckSidePoint> side_points, surface_points;
   std::vector<DeckSide> sides;
 };
 
