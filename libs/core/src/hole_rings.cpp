@@ -57,7 +57,10 @@ void put_in_order(const std::vector<HolePoint>& points, const BeamOrigins& origi
     y += dy;
   }
   const double middle = std::atan2(y, x);
-  for (RingPoint& p : rings) p.azimuth = std::remainder(p.azimuth - middle, 2.0 * M_PI);
+  for (RingPoint& p : rings) {
+    p.azimuth -= middle;
+    if (std::abs(p.azimuth) > M_PI) p.azimuth = std::remainder(p.azimuth, 2.0 * M_PI);
+  }
   // Points of one azimuth are told apart by their elevations, so that the order is always the same.
   std::sort(rings.begin(), rings.end(), [](const RingPoint& a, const RingPoint& b) {
     return a.azimuth != b.azimuth ? a.azimuth < b.azimuth : a.elevation < b.elevation;
