@@ -295,14 +295,19 @@ HoleWindow window_around(const HoleCase& hole) {
   return window;
 }
 
-// Adds the points of a cell of the lattice that are of the rim, the walls and the floor, or else
+/// Points of the surface, by their places in the order of its cells.
+struct PlaceRange {
+  std::size_t first = 0, last = 0;  // the last one is behind
+};
+
+// Adds those of some points of the surface that are of the rim, the walls and the floor, or else
 // those that are farther away.
-void add_points(HoleCase& hole, const HoleWindow& window, bool far, std::size_t slot) {
+void add_points(HoleCase& hole, const HoleWindow& window, bool far, PlaceRange places) {
   const GroundSurface& surface = hole.input.field.surface;
   const ElevationGrid& grid = hole.grid();
-  for (std::int32_t k = surface.cells.first[slot]; k < surface.cells.first[slot + 1]; ++k) {
-    if (hole.input.field.support[static_cast<std::size_t>(k)] == Support::kAbove) continue;
-    const CellPoint& p = surface.cells.points[static_cast<std::size_t>(k)];
+  for (std::size_t k = places.first; k < places.last; ++k) {
+    if (hole.input.field.support[k] == Support::kAbove) continue;
+    const CellPoint& p = surface.cells.points[k];
     // The window holds all cells of the floor and those next to them.
     if (window.contains(p.x, p.y) == far) continue;
     CellIndex cell;
@@ -311,25 +316,42 @@ void add_points(HoleCase& hole, const HoleWindow& window, bool far, std::size_t 
     if (of == kUnobserved) continue;
     HoleZone zone = hole.workspace.zone[static_cast<std::size_t>(of)];
     if (zone == HoleZone::kFar && !far) zone = HoleZone::kRim;
-    const float above_cell = hole.cells.rim[static_cast<std::size_t>(of)] - p.z;
-    hole.workspace.points.push_back({p.x, p.y, p.z, p.index, of, 1.0F, above_cell, zone});
+    // Field by field: a point that is made first and then copied takes longer than all else here.
+    HolePoint& point = hole.workspace.points.emplace_back();
+    point.x = p.x;
+    point.y = p.y;
+    point.z = p.z;
+    point.index = p.index;
+    point.slot = of;
+    point.weight = 1.0F;
+    point.depth = hole.cells.rim[static_cast<std::size_t>(of)] - p.z;
+    point.zone = zone;
   }
+}
+
+// The points of some columns of a row of the lattice: they lie one behind the other.
+PlaceRange places_in_row(const CellPoints& cells, int row, int first_column, int last_column) {
+  const auto slot_at = [&](int column) { return cells.slot_of[cells.number_of({row, column})]; };
+  while (first_column <= last_column && slot_at(first_column) < 0) ++first_column;
+  if (first_column > last_column) return {};
+  while (slot_at(last_column) < 0) --last_column;
+  const auto first = static_cast<std::size_t>(slot_at(first_column));
+  const auto last = static_cast<std::size_t>(slot_at(last_column));
+  return {static_cast<std::size_t>(cells.first[first]),
+          static_cast<std::size_t>(cells.first[last + 1])};
 }
 
 void add_points_between(HoleCase& hole, const HoleWindow& window, bool far, Position2 low,
                         Position2 high) {
-  const GroundSurface& surface = hole.input.field.surface;
-  const SquareLattice& lattice = surface.lattice();
+  const CellPoints& cells = hole.input.field.surface.cells;
+  const SquareLattice& lattice = cells.lattice;
   const auto index = [&lattice](double metres) {
     const int at = static_cast<int>(std::floor(metres / lattice.cell_size)) + lattice.side / 2;
     return std::clamp(at, 0, lattice.side - 1);
   };
-  for (int row = index(low.x); row <= index(high.x); ++row) {
-    for (int column = index(low.y); column <= index(high.y); ++column) {
-      const std::int32_t slot = surface.cells.slot_of[surface.cells.number_of({row, column})];
-      if (slot >= 0) add_points(hole, window, far, static_cast<std::size_t>(slot));
-    }
-  }
+  const int first_column = index(low.y), last_column = index(high.y);
+  for (int row = index(low.x); row <= index(high.x); ++row)
+    add_points(hole, window, far, places_in_row(cells, row, first_column, last_column));
 }
 
 // Brings the points on and below the ground in and around the members together. Their depths are
