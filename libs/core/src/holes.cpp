@@ -2,6 +2,7 @@
 #include "mrpt_terrain/core/holes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "hole_rim.h"
@@ -11,6 +12,7 @@
 #include "slots_around.h"
 #include "stray_points.h"
 #include "surface_levels.h"
+#include "wide_registers.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -370,18 +372,59 @@ void collect_points_ahead(HoleCase& hole, const HoleWindow& window) {
   add_points_between(hole, window, true, low, high);
 }
 
+// Points that are worked on together.
+constexpr std::size_t kTogether = 64;
+
+/// Where some points are, and a number for each: for loops of one kind of work, which compilers do
+/// for many points at once.
+struct PointBatch {
+  std::size_t first = 0, size = 0;
+  std::array<double, kTogether> x, y;
+  std::array<float, kTogether> result;
+};
+
+template <class Measure, class Take>
+void in_batches(std::vector<HolePoint>& points, Measure&& measure, Take&& take) {
+  PointBatch batch;
+  for (; batch.first < points.size(); batch.first += kTogether) {
+    batch.size = std::min(kTogether, points.size() - batch.first);
+    for (std::size_t i = 0; i < batch.size; ++i) {
+      batch.x[i] = points[batch.first + i].x;
+      batch.y[i] = points[batch.first + i].y;
+    }
+    measure(batch);
+    for (std::size_t i = 0; i < batch.size; ++i) take(points[batch.first + i], batch.result[i]);
+  }
+}
+
+// Weights about a rectangle from one corner to the other, and `half` a metre farther.
+MRPT_TERRAIN_WIDE_REGISTERS
+void measure_weights(const Position2 low, const Position2 high, double half, PointBatch& batch) {
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    const double x = batch.x[i], y = batch.y[i];
+    const double dx = std::max(std::max(low.x - half - x, x - high.x - half), 0.0);
+    const double dy = std::max(std::max(low.y - half - y, y - high.y - half), 0.0);
+    batch.result[i] =
+        static_cast<float>(1.0 / (1.0 + (dx * dx + dy * dy) / (kHalfWeight * kHalfWeight)));
+  }
+}
+
+MRPT_TERRAIN_WIDE_REGISTERS
+void measure_heights(const RimSurface& surface, PointBatch& batch) {
+  const RimSurface rim = surface;
+  for (std::size_t i = 0; i < batch.size; ++i)
+    batch.result[i] = static_cast<float>(rim.height_at(batch.x[i], batch.y[i]));
+}
+
 // The nearer to the hole, the more a point of the rim counts.
 void weigh_points(HoleCase& hole) {
   const CellBox box = hole.box();
   const GridGeometry& geometry = hole.grid().geometry;
   const double half = geometry.cell_size() / 2;
   const Position2 low = geometry.centre_of(box.low), high = geometry.centre_of(box.high);
-  for (HolePoint& p : hole.workspace.points) {
-    if (p.zone == HoleZone::kFloor) continue;
-    const double dx = std::max({low.x - half - p.x, p.x - high.x - half, 0.0});
-    const double dy = std::max({low.y - half - p.y, p.y - high.y - half, 0.0});
-    p.weight = static_cast<float>(1.0 / (1.0 + (dx * dx + dy * dy) / (kHalfWeight * kHalfWeight)));
-  }
+  in_batches(
+      hole.workspace.points, [&](PointBatch& batch) { measure_weights(low, high, half, batch); },
+      [](HolePoint& p, float weight) { p.weight = weight; });
 }
 
 // Fits the rim, and measures the depth that a fifth of the floor's points exceed.
@@ -392,10 +435,12 @@ bool measure_depth(HoleCase& hole) {
     return false;
   std::vector<float>& depths = hole.workspace.values;
   depths.clear();
-  for (HolePoint& p : hole.workspace.points) {
-    p.depth = static_cast<float>(hole.rim.height_at(p.x, p.y)) - p.z;
-    if (p.zone == HoleZone::kFloor) depths.push_back(p.depth);
-  }
+  in_batches(
+      hole.workspace.points, [&hole](PointBatch& batch) { measure_heights(hole.rim, batch); },
+      [&depths](HolePoint& p, float height) {
+        p.depth = height - p.z;
+        if (p.zone == HoleZone::kFloor) depths.push_back(p.depth);
+      });
   if (depths.empty()) return false;
   const auto fifth = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() * 4 / 5);
   std::nth_element(depths.begin(), fifth, depths.end());

@@ -279,12 +279,11 @@ void add_beams_beside(const BeamOrigins& origins, const FaceSurroundings& around
                     kFarther;
   const GroundSearch search(origins, around, origin, sector);
   search.visit([&](std::int32_t point, float turn, float elevation) {
-    FaceBeam beam;
+    FaceBeam& beam = workspace.beams.emplace_back();
     beam.column = column_of(turn);
     beam.elevation = elevation;
     beam.point = point;
     beam.ground = true;
-    workspace.beams.push_back(beam);
   });
   sort_beams(workspace);
 }
