@@ -106,6 +106,54 @@ TEST(OrientedBoxes, AllPointsAreInside) {
   }
 }
 
+/// The corners of the convex hull, by gift wrapping.
+Points hull_of(const Points& points) {
+  const auto x = [&points](std::size_t i) { return static_cast<double>(points.x[i]); };
+  const auto y = [&points](std::size_t i) { return static_cast<double>(points.y[i]); };
+  std::size_t start = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (x(i) < x(start) || (x(i) == x(start) && y(i) < y(start))) start = i;
+  }
+  Points hull;
+  std::size_t at = start;
+  do {
+    hull.push_back(points.x[at], points.y[at], points.z[at]);
+    std::size_t next = at == 0 ? 1 : 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double side = (x(next) - x(at)) * (y(i) - y(at)) - (y(next) - y(at)) * (x(i) - x(at));
+      if (side < 0.0) next = i;
+    }
+    at = next;
+  } while (at != start && hull.size() < points.size());
+  return hull;
+}
+
+// Oracle: leaving points out that lie inside changes nothing, of walls that are hardly wider than
+// noise and of round things, whose hulls have many corners.
+TEST(OrientedBoxes, ManyPointsHaveTheBoxOfTheirHull) {
+  RandomGenerator random(74, 0);
+  for (int trial = 0; trial < 40; ++trial) {
+    const double yaw = kPi * random.uniform(), length = 20.0 * random.uniform() + 1.0;
+    const bool round = trial % 4 == 0;
+    Points points;
+    for (int k = 0; k < 3000; ++k) {
+      const double turn = 2.0 * kPi * random.uniform(), radius = std::sqrt(random.uniform());
+      const double u = round ? radius * std::cos(turn) : length * random.uniform();
+      const double v =
+          round ? radius * std::sin(turn) : 0.02 * (random.uniform() + random.uniform());
+      points.push_back(static_cast<float>(15.0 + std::cos(yaw) * u - std::sin(yaw) * v),
+                       static_cast<float>(std::sin(yaw) * u + std::cos(yaw) * v), 0.0F);
+    }
+    const Points hull = hull_of(points);
+    ASSERT_LT(hull.size(), 300U) << trial;
+    const OrientedBox box = box_of(points), of_hull = box_of(hull);
+    EXPECT_EQ(box.length, of_hull.length) << trial;
+    EXPECT_EQ(box.width, of_hull.width) << trial;
+    EXPECT_EQ(box.yaw, of_hull.yaw) << trial;
+    EXPECT_EQ(box.centre.x, of_hull.centre.x) << trial;
+  }
+}
+
 TEST(OrientedBoxes, FewPointsAreNoSpecialCase) {
   EXPECT_EQ(box_of(Points{}).length, 0.0);
   Points points;

@@ -156,11 +156,10 @@ Moments find_face(const BeamPlaneFit& fit, FaceSlopeWorkspace& workspace) {
         static_cast<float>(fit.range_sigma) * length_of(along, static_cast<float>(kAcrossBeam));
     if (workspace.beyond[i] != 0 || std::abs(e) > kOnFace * sigma) continue;
     sums.add(points.x[i], points.y[i], points.z[i]);
-    FaceBeam beam;
+    FaceBeam& beam = workspace.beams.emplace_back();
     beam.column = column_of(points.dx[i], points.dy[i]);
     beam.elevation = elevation_of(points.dz[i]);
     beam.point = static_cast<std::int32_t>(i);
-    workspace.beams.push_back(beam);
   }
   sort_beams(workspace);
   return moments_from(sums);

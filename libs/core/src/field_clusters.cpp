@@ -7,6 +7,7 @@
 
 #include "carried_things.h"
 #include "continued_things.h"
+#include "length_of.h"
 #include "thing_pieces.h"
 
 namespace mrpt_terrain {
@@ -56,7 +57,7 @@ struct Linker {
 
 int reach_of(const ElevationGrid& grid, const FieldClusterParams& params, CellIndex index) {
   const Position2 centre = grid.geometry.centre_of(index);
-  const double gap = params.link + params.link_growth * std::hypot(centre.x, centre.y);
+  const double gap = params.link + params.link_growth * length_of(centre.x, centre.y);
   const int reach = 1 + static_cast<int>(gap / grid.geometry.cell_size());
   return std::min(reach, kMostReach);
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "hole_shares.h"
+#include "sort_in_buckets.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -41,8 +42,29 @@ RingState state_of(const HolePoint& p, double depth) {
   return p.zone == HoleZone::kRim ? kLowElsewhere : kOnFloor;
 }
 
+// Points of one azimuth are told apart by their elevations, so that the order is always the same.
+void sort_by_azimuth(HoleWorkspace& workspace) {
+  std::vector<RingPoint>& rings = workspace.rings;
+  if (rings.empty()) return;
+  const auto less = [](const RingPoint& a, const RingPoint& b) {
+    return a.azimuth != b.azimuth ? a.azimuth < b.azimuth : a.elevation < b.elevation;
+  };
+  const auto ends = std::minmax_element(
+      rings.begin(), rings.end(),
+      [](const RingPoint& a, const RingPoint& b) { return a.azimuth < b.azimuth; });
+  const double low = ends.first->azimuth, extent = ends.second->azimuth - low;
+  const double per_radian = static_cast<double>(rings.size()) / std::max(extent, kShortestStep);
+  const auto bucket_of = [low, per_radian](const RingPoint& p) {
+    return static_cast<std::size_t>((p.azimuth - low) * per_radian);
+  };
+  // One more for the end of the last one.
+  sort_in_buckets(rings.size() + 1, bucket_of, less, rings, workspace.sorted_rings,
+                  workspace.first_ring);
+}
+
 void put_in_order(const std::vector<HolePoint>& points, const BeamOrigins& origins, double depth,
-                  std::vector<RingPoint>& rings) {
+                  HoleWorkspace& workspace) {
+  std::vector<RingPoint>& rings = workspace.rings;
   double x = 0.0, y = 0.0;
   rings.clear();
   for (const HolePoint& p : points) {
@@ -57,11 +79,11 @@ void put_in_order(const std::vector<HolePoint>& points, const BeamOrigins& origi
     y += dy;
   }
   const double middle = std::atan2(y, x);
-  for (RingPoint& p : rings) p.azimuth = std::remainder(p.azimuth - middle, 2.0 * M_PI);
-  // Points of one azimuth are told apart by their elevations, so that the order is always the same.
-  std::sort(rings.begin(), rings.end(), [](const RingPoint& a, const RingPoint& b) {
-    return a.azimuth != b.azimuth ? a.azimuth < b.azimuth : a.elevation < b.elevation;
-  });
+  for (RingPoint& p : rings) {
+    p.azimuth -= middle;
+    if (std::abs(p.azimuth) > M_PI) p.azimuth = std::remainder(p.azimuth, 2.0 * M_PI);
+  }
+  sort_by_azimuth(workspace);
 }
 
 // Leads from each point to the next one on its ring. Returns the median step, radians.
@@ -202,7 +224,7 @@ void follow(const std::vector<RingPoint>& rings, std::size_t start, double step,
 
 RingEvidence follow_rings(const std::vector<HolePoint>& points, const BeamOrigins& origins,
                           double depth, HoleWorkspace& workspace) {
-  put_in_order(points, origins, depth, workspace.rings);
+  put_in_order(points, origins, depth, workspace);
   const double step = link(workspace.rings, workspace.values);
   RingEvidence evidence;
   evidence.noise = noise_on_rim(workspace.rings, step, workspace.values);

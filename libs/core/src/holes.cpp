@@ -2,6 +2,7 @@
 #include "mrpt_terrain/core/holes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "hole_rim.h"
@@ -11,6 +12,7 @@
 #include "slots_around.h"
 #include "stray_points.h"
 #include "surface_levels.h"
+#include "wide_registers.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -295,14 +297,19 @@ HoleWindow window_around(const HoleCase& hole) {
   return window;
 }
 
-// Adds the points of a cell of the lattice that are of the rim, the walls and the floor, or else
+/// Points of the surface, by their places in the order of its cells.
+struct PlaceRange {
+  std::size_t first = 0, last = 0;  // the last one is behind
+};
+
+// Adds those of some points of the surface that are of the rim, the walls and the floor, or else
 // those that are farther away.
-void add_points(HoleCase& hole, const HoleWindow& window, bool far, std::size_t slot) {
+void add_points(HoleCase& hole, const HoleWindow& window, bool far, PlaceRange places) {
   const GroundSurface& surface = hole.input.field.surface;
   const ElevationGrid& grid = hole.grid();
-  for (std::int32_t k = surface.cells.first[slot]; k < surface.cells.first[slot + 1]; ++k) {
-    if (hole.input.field.support[static_cast<std::size_t>(k)] == Support::kAbove) continue;
-    const CellPoint& p = surface.cells.points[static_cast<std::size_t>(k)];
+  for (std::size_t k = places.first; k < places.last; ++k) {
+    if (hole.input.field.support[k] == Support::kAbove) continue;
+    const CellPoint& p = surface.cells.points[k];
     // The window holds all cells of the floor and those next to them.
     if (window.contains(p.x, p.y) == far) continue;
     CellIndex cell;
@@ -311,25 +318,42 @@ void add_points(HoleCase& hole, const HoleWindow& window, bool far, std::size_t 
     if (of == kUnobserved) continue;
     HoleZone zone = hole.workspace.zone[static_cast<std::size_t>(of)];
     if (zone == HoleZone::kFar && !far) zone = HoleZone::kRim;
-    const float above_cell = hole.cells.rim[static_cast<std::size_t>(of)] - p.z;
-    hole.workspace.points.push_back({p.x, p.y, p.z, p.index, of, 1.0F, above_cell, zone});
+    // Field by field: a point that is made first and then copied takes longer than all else here.
+    HolePoint& point = hole.workspace.points.emplace_back();
+    point.x = p.x;
+    point.y = p.y;
+    point.z = p.z;
+    point.index = p.index;
+    point.slot = of;
+    point.weight = 1.0F;
+    point.depth = hole.cells.rim[static_cast<std::size_t>(of)] - p.z;
+    point.zone = zone;
   }
+}
+
+// The points of some columns of a row of the lattice: they lie one behind the other.
+PlaceRange places_in_row(const CellPoints& cells, int row, int first_column, int last_column) {
+  const auto slot_at = [&](int column) { return cells.slot_of[cells.number_of({row, column})]; };
+  while (first_column <= last_column && slot_at(first_column) < 0) ++first_column;
+  if (first_column > last_column) return {};
+  while (slot_at(last_column) < 0) --last_column;
+  const auto first = static_cast<std::size_t>(slot_at(first_column));
+  const auto last = static_cast<std::size_t>(slot_at(last_column));
+  return {static_cast<std::size_t>(cells.first[first]),
+          static_cast<std::size_t>(cells.first[last + 1])};
 }
 
 void add_points_between(HoleCase& hole, const HoleWindow& window, bool far, Position2 low,
                         Position2 high) {
-  const GroundSurface& surface = hole.input.field.surface;
-  const SquareLattice& lattice = surface.lattice();
+  const CellPoints& cells = hole.input.field.surface.cells;
+  const SquareLattice& lattice = cells.lattice;
   const auto index = [&lattice](double metres) {
     const int at = static_cast<int>(std::floor(metres / lattice.cell_size)) + lattice.side / 2;
     return std::clamp(at, 0, lattice.side - 1);
   };
-  for (int row = index(low.x); row <= index(high.x); ++row) {
-    for (int column = index(low.y); column <= index(high.y); ++column) {
-      const std::int32_t slot = surface.cells.slot_of[surface.cells.number_of({row, column})];
-      if (slot >= 0) add_points(hole, window, far, static_cast<std::size_t>(slot));
-    }
-  }
+  const int first_column = index(low.y), last_column = index(high.y);
+  for (int row = index(low.x); row <= index(high.x); ++row)
+    add_points(hole, window, far, places_in_row(cells, row, first_column, last_column));
 }
 
 // Brings the points on and below the ground in and around the members together. Their depths are
@@ -348,18 +372,59 @@ void collect_points_ahead(HoleCase& hole, const HoleWindow& window) {
   add_points_between(hole, window, true, low, high);
 }
 
+// Points that are worked on together.
+constexpr std::size_t kTogether = 64;
+
+/// Where some points are, and a number for each: for loops of one kind of work, which compilers do
+/// for many points at once.
+struct PointBatch {
+  std::size_t first = 0, size = 0;
+  std::array<double, kTogether> x, y;
+  std::array<float, kTogether> result;
+};
+
+template <class Measure, class Take>
+void in_batches(std::vector<HolePoint>& points, Measure&& measure, Take&& take) {
+  PointBatch batch;
+  for (; batch.first < points.size(); batch.first += kTogether) {
+    batch.size = std::min(kTogether, points.size() - batch.first);
+    for (std::size_t i = 0; i < batch.size; ++i) {
+      batch.x[i] = points[batch.first + i].x;
+      batch.y[i] = points[batch.first + i].y;
+    }
+    measure(batch);
+    for (std::size_t i = 0; i < batch.size; ++i) take(points[batch.first + i], batch.result[i]);
+  }
+}
+
+// Weights about a rectangle from one corner to the other, and `half` a metre farther.
+MRPT_TERRAIN_WIDE_REGISTERS
+void measure_weights(const Position2 low, const Position2 high, double half, PointBatch& batch) {
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    const double x = batch.x[i], y = batch.y[i];
+    const double dx = std::max(std::max(low.x - half - x, x - high.x - half), 0.0);
+    const double dy = std::max(std::max(low.y - half - y, y - high.y - half), 0.0);
+    batch.result[i] =
+        static_cast<float>(1.0 / (1.0 + (dx * dx + dy * dy) / (kHalfWeight * kHalfWeight)));
+  }
+}
+
+MRPT_TERRAIN_WIDE_REGISTERS
+void measure_heights(const RimSurface& surface, PointBatch& batch) {
+  const RimSurface rim = surface;
+  for (std::size_t i = 0; i < batch.size; ++i)
+    batch.result[i] = static_cast<float>(rim.height_at(batch.x[i], batch.y[i]));
+}
+
 // The nearer to the hole, the more a point of the rim counts.
 void weigh_points(HoleCase& hole) {
   const CellBox box = hole.box();
   const GridGeometry& geometry = hole.grid().geometry;
   const double half = geometry.cell_size() / 2;
   const Position2 low = geometry.centre_of(box.low), high = geometry.centre_of(box.high);
-  for (HolePoint& p : hole.workspace.points) {
-    if (p.zone == HoleZone::kFloor) continue;
-    const double dx = std::max({low.x - half - p.x, p.x - high.x - half, 0.0});
-    const double dy = std::max({low.y - half - p.y, p.y - high.y - half, 0.0});
-    p.weight = static_cast<float>(1.0 / (1.0 + (dx * dx + dy * dy) / (kHalfWeight * kHalfWeight)));
-  }
+  in_batches(
+      hole.workspace.points, [&](PointBatch& batch) { measure_weights(low, high, half, batch); },
+      [](HolePoint& p, float weight) { p.weight = weight; });
 }
 
 // Fits the rim, and measures the depth that a fifth of the floor's points exceed.
@@ -370,10 +435,12 @@ bool measure_depth(HoleCase& hole) {
     return false;
   std::vector<float>& depths = hole.workspace.values;
   depths.clear();
-  for (HolePoint& p : hole.workspace.points) {
-    p.depth = static_cast<float>(hole.rim.height_at(p.x, p.y)) - p.z;
-    if (p.zone == HoleZone::kFloor) depths.push_back(p.depth);
-  }
+  in_batches(
+      hole.workspace.points, [&hole](PointBatch& batch) { measure_heights(hole.rim, batch); },
+      [&depths](HolePoint& p, float height) {
+        p.depth = height - p.z;
+        if (p.zone == HoleZone::kFloor) depths.push_back(p.depth);
+      });
   if (depths.empty()) return false;
   const auto fifth = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() * 4 / 5);
   std::nth_element(depths.begin(), fifth, depths.end());

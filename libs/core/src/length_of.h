@@ -12,4 +12,8 @@ namespace mrpt_terrain {
   return static_cast<float>(std::sqrt(u * u + v * v));
 }
 
+/// The same of numbers whose squares are in range, such as places in metres: up to a rounding, what
+/// `std::hypot` gives.
+[[nodiscard]] inline double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
+
 }  // namespace mrpt_terrain

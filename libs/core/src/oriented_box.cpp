@@ -18,13 +18,24 @@ double cross(const Position2& o, const Position2& a, const Position2& b) {
   return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
 }
 
-/// Extreme points in eight directions, counter-clockwise.
-using Octagon = std::array<Position2, 8>;
-static_assert(kCellLanes == 8, "a lane per direction");
+// Points are left out in so many rounds at most, while there are more than so many.
+constexpr int kRounds = 4;
+constexpr std::size_t kFew = 48;
 
+using EightPlaces = std::array<Position2, kCellLanes>;
+
+// The first of the farthest points in each of eight directions.
 MRPT_TERRAIN_WIDE_REGISTERS
-void find_extremes(const double* x, const double* y, std::size_t n, Octagon& result) {
-  const DoubleLanes direction_x{1, 1, 0, -1, -1, -1, 0, 1}, direction_y{0, 1, 1, 1, 0, -1, -1, -1};
+void find_extremes(const EightPlaces& direction, const double* x, const double* y, std::size_t n,
+                   EightPlaces& result) {
+  LaneArray to_x, to_y;
+  for (std::size_t k = 0; k < kCellLanes; ++k) {
+    to_x.value[k] = direction[k].x;
+    to_y.value[k] = direction[k].y;
+  }
+  DoubleLanes direction_x, direction_y;
+  load(to_x, direction_x);
+  load(to_y, direction_y);
   DoubleLanes best = DoubleLanes{} + std::numeric_limits<double>::lowest(), best_x{}, best_y{};
   for (std::size_t i = 0; i < n; ++i) {
     const DoubleLanes along = direction_x * x[i] + direction_y * y[i];
@@ -35,17 +46,47 @@ void find_extremes(const double* x, const double* y, std::size_t n, Octagon& res
   LaneArray result_x, result_y;
   store(best_x, result_x);
   store(best_y, result_y);
-  for (std::size_t k = 0; k < result.size(); ++k)
-    result[k] = {result_x.value[k], result_y.value[k]};
+  for (std::size_t k = 0; k < kCellLanes; ++k) result[k] = {result_x.value[k], result_y.value[k]};
 }
 
-// Least cross product of the edges of the octagon and the places: positive inside.
+// Extreme points in eight directions, counter-clockwise.
+void find_octagon(const OrientedBoxWorkspace& workspace, std::vector<Position2>& polygon) {
+  constexpr EightPlaces kDirections{
+      {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+  EightPlaces corners;
+  find_extremes(kDirections, workspace.x.data(), workspace.y.data(), workspace.x.size(), corners);
+  polygon.assign(corners.begin(), corners.end());
+}
+
+// Puts the point farthest outside of every edge of a convex polygon between the edge's ends.
+void add_corners(const OrientedBoxWorkspace& workspace, std::vector<Position2>& polygon,
+                 std::vector<Position2>& finer) {
+  finer.clear();
+  const std::size_t n = polygon.size();
+  for (std::size_t first = 0; first < n; first += kCellLanes) {
+    const std::size_t edges = std::min(kCellLanes, n - first);
+    EightPlaces outward{}, farthest;
+    for (std::size_t k = 0; k < edges; ++k) {
+      const Position2 &o = polygon[first + k], &a = polygon[(first + k + 1) % n];
+      outward[k] = {a.y - o.y, o.x - a.x};
+    }
+    find_extremes(outward, workspace.x.data(), workspace.y.data(), workspace.x.size(), farthest);
+    for (std::size_t k = 0; k < edges; ++k) {
+      const Position2 &o = polygon[first + k], &a = polygon[(first + k + 1) % n];
+      finer.push_back(o);
+      if (cross(o, a, farthest[k]) < 0.0) finer.push_back(farthest[k]);
+    }
+  }
+  polygon.swap(finer);
+}
+
+// Least cross product of the edges of a polygon and the places: positive inside.
 MRPT_TERRAIN_WIDE_REGISTERS
-void find_inside(const Octagon& octagon, const double* x, const double* y, std::size_t n,
-                 double* inside) {
+void find_inside(const std::vector<Position2>& polygon, const double* x, const double* y,
+                 std::size_t n, double* inside) {
   std::fill_n(inside, n, std::numeric_limits<double>::max());
-  for (std::size_t k = 0; k < 8; ++k) {
-    const Position2 o = octagon[k], a = octagon[(k + 1) % 8];
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Position2 o = polygon[k], a = polygon[(k + 1) % polygon.size()];
     if (o.x == a.x && o.y == a.y) continue;
     const double dx = a.x - o.x, dy = a.y - o.y;
     for (std::size_t i = 0; i < n; ++i) {
@@ -53,6 +94,35 @@ void find_inside(const Octagon& octagon, const double* x, const double* y, std::
       inside[i] = cross < inside[i] ? cross : inside[i];
     }
   }
+}
+
+// Leaves out the points inside of a polygon.
+void keep_outside(const std::vector<Position2>& polygon, OrientedBoxWorkspace& workspace) {
+  std::vector<double>&x = workspace.x, &y = workspace.y;
+  workspace.inside.resize(x.size());
+  find_inside(polygon, x.data(), y.data(), x.size(), workspace.inside.data());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[kept] = x[i];
+    y[kept] = y[i];
+    kept += workspace.inside[i] <= 0.0 ? 1U : 0U;
+  }
+  x.resize(kept);
+  y.resize(kept);
+}
+
+// Points that may be corners of the convex hull, all that are among them: the octagon of extreme
+// points, and finer polygons made of it, leave out what lies inside.
+void find_candidates(OrientedBoxWorkspace& workspace) {
+  std::vector<Position2>& polygon = workspace.candidates;
+  find_octagon(workspace, polygon);
+  keep_outside(polygon, workspace);
+  for (int round = 1; round < kRounds && workspace.x.size() > kFew; ++round) {
+    add_corners(workspace, polygon, workspace.hull);
+    keep_outside(polygon, workspace);
+  }
+  for (std::size_t i = 0; i < workspace.x.size(); ++i)
+    polygon.push_back({workspace.x[i], workspace.y[i]});
 }
 
 // Andrew's monotone chain, counter-clockwise; no three points in a row on a line.
@@ -145,7 +215,7 @@ OrientedBox box_around(const PointsView& points, IndexRange members,
   OrientedBox best;
   if (members.size() == 0) return best;
   const std::size_t n = members.size();
-  for (auto* values : {&workspace.x, &workspace.y, &workspace.inside}) values->resize(n);
+  for (auto* values : {&workspace.x, &workspace.y}) values->resize(n);
   float low = std::numeric_limits<float>::max(), high = std::numeric_limits<float>::lowest();
   std::size_t next = 0;
   for (const std::int32_t item : members) {
@@ -155,14 +225,7 @@ OrientedBox box_around(const PointsView& points, IndexRange members,
     low = std::min(low, points.z[i]);
     high = std::max(high, points.z[i]);
   }
-  Octagon octagon;
-  find_extremes(workspace.x.data(), workspace.y.data(), n, octagon);
-  find_inside(octagon, workspace.x.data(), workspace.y.data(), n, workspace.inside.data());
-  workspace.candidates.assign(octagon.begin(), octagon.end());
-  for (std::size_t i = 0; i < n; ++i) {
-    if (workspace.inside[i] <= 0.0)
-      workspace.candidates.push_back({workspace.x[i], workspace.y[i]});
-  }
+  find_candidates(workspace);
   find_hull(workspace.candidates, workspace.hull);
   best = smallest_rectangle(workspace.hull);
   turn_to_longer_side(best);

@@ -125,7 +125,7 @@ bool PassedBeams::divide(std::size_t slot_a, std::size_t slot_b) const {
   const Position2 centre = grid_.geometry.centre_of(a);
   const double beam_x = centre.x - static_cast<double>(sensor_[0]);
   const double beam_y = centre.y - static_cast<double>(sensor_[1]);
-  const double range = std::hypot(beam_x, beam_y);
+  const double range = length_of(beam_x, beam_y);
   const auto across = [&](double x, double y) { return std::abs(x * beam_y - y * beam_x) / range; };
   const double cell = grid_.geometry.cell_size(), part = cell / kParts;
   // Points lie anywhere in their parts.

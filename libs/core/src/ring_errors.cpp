@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+
+#include "sort_in_buckets.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -244,7 +245,7 @@ struct GroundFit {
 
 }  // namespace
 
-// By counting columns, as these are few, and then within each column.
+// Columns are few.
 void sort_beams(FaceSlopeWorkspace& workspace) {
   const std::vector<FaceBeam>& beams = workspace.beams;
   if (beams.empty()) return;
@@ -253,28 +254,14 @@ void sort_beams(FaceSlopeWorkspace& workspace) {
     low = std::min(low, beam.column);
     high = std::max(high, beam.column);
   }
-  std::vector<std::int32_t>& next = workspace.first_beam;
-  next.assign(static_cast<std::size_t>(high - low) + 2, 0);
-  for (const FaceBeam& beam : beams) ++next[static_cast<std::size_t>(beam.column - low) + 1];
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<FaceBeam>& sorted = workspace.beams_by_column;
-  sorted.resize(beams.size());
-  for (const FaceBeam& beam : beams) {
-    std::int32_t& place = next[static_cast<std::size_t>(beam.column - low)];
-    sorted[static_cast<std::size_t>(place++)] = beam;
-  }
-  // The place behind the last beam of each column is left.
-  std::ptrdiff_t first = 0;
-  for (std::size_t column = 0; column + 1 < next.size(); ++column) {
-    const std::ptrdiff_t last = next[column];
-    std::sort(sorted.begin() + first, sorted.begin() + last,
-              [](const FaceBeam& a, const FaceBeam& b) {
-                if (a.elevation != b.elevation) return a.elevation < b.elevation;
-                return a.ground != b.ground ? b.ground : a.point < b.point;
-              });
-    first = last;
-  }
-  workspace.beams.swap(sorted);
+  const auto less = [](const FaceBeam& a, const FaceBeam& b) {
+    if (a.elevation != b.elevation) return a.elevation < b.elevation;
+    return a.ground != b.ground ? b.ground : a.point < b.point;
+  };
+  sort_in_buckets(
+      static_cast<std::size_t>(high - low) + 1,
+      [low](const FaceBeam& beam) { return static_cast<std::size_t>(beam.column - low); }, less,
+      workspace.beams, workspace.beams_by_column, workspace.first_beam);
 }
 
 void add_beams_beside(const BeamOrigins& origins, const FaceSurroundings& around,
@@ -292,12 +279,11 @@ void add_beams_beside(const BeamOrigins& origins, const FaceSurroundings& around
                     kFarther;
   const GroundSearch search(origins, around, origin, sector);
   search.visit([&](std::int32_t point, float turn, float elevation) {
-    FaceBeam beam;
+    FaceBeam& beam = workspace.beams.emplace_back();
     beam.column = column_of(turn);
     beam.elevation = elevation;
     beam.point = point;
     beam.ground = true;
-    workspace.beams.push_back(beam);
   });
   sort_beams(workspace);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "length_of.h"
 #include "slots_around.h"
 
 namespace mrpt_terrain {
@@ -25,7 +26,7 @@ constexpr float kOnGround = 0.2F;
 bool is_stray(const HoleInput& input, const CellPoint& p) {
   const auto& origin = input.origins.of(static_cast<std::size_t>(p.index));
   const float dx = origin[0] - p.x, dy = origin[1] - p.y, dz = origin[2] - p.z;
-  const float range = std::hypot(dx, dy);
+  const float range = length_of(dx, dy);
   int crossed = 0, steps = 0;
   for (float t = kOpening; t < std::min(range, kFarthest); t += kStep) {
     const float share = t / range;

@@ -173,9 +173,11 @@ struct HoleWorkspace {
   std::vector<std::int32_t> deep, all;  ///< per slot: deep points and points, where looked at
   std::vector<HolePoint> points;        ///< in and around the members
   RimPoints rim_points;
-  std::vector<RingPoint> rings;     ///< the same points by azimuth
-  std::vector<float> values;        ///< for medians and the like
-  std::vector<std::uint8_t> stray;  ///< per point of the scan: its own beam speaks against it
+  std::vector<RingPoint> rings;          ///< the same points by azimuth
+  std::vector<RingPoint> sorted_rings;   ///< for sorting these
+  std::vector<std::int32_t> first_ring;  ///< the same
+  std::vector<float> values;             ///< for medians and the like
+  std::vector<std::uint8_t> stray;       ///< per point of the scan: its own beam speaks against it
 };
 
 /// What holes are looked for in; all borrowed.

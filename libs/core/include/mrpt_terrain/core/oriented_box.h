@@ -22,16 +22,16 @@ struct OrientedBox {
 
 /// Scratch memory of `box_around`.
 struct OrientedBoxWorkspace {
-  std::vector<double> x, y;    ///< of the members
-  std::vector<double> inside;  ///< of each: least distance from an edge of the octagon, scaled
+  std::vector<double> x, y;    ///< of the members that may be corners of the hull
+  std::vector<double> inside;  ///< of each: least distance from an edge of the polygon, scaled
   std::vector<Position2> candidates;
   std::vector<Position2> hull;
 };
 
 /// Box around some points of a scan. The rectangle has a side along an edge of the convex hull
 /// (Freeman and Shapira 1975); the hull is Andrew's (1979), of the points that lie outside of the
-/// octagon of extreme points (Akl and Toussaint 1978). No points give an empty box at the origin,
-/// points on a line one of width 0.
+/// octagon of extreme points (Akl and Toussaint 1978) and of finer polygons made of it. No points
+/// give an empty box at the origin, points on a line one of width 0.
 [[nodiscard]] OrientedBox box_around(const PointsView& points, IndexRange members,
                                      OrientedBoxWorkspace& workspace);
 
