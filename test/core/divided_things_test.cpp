@@ -3,7 +3,9 @@
 
 #include <array>
 #include <map>
+#include <vector>
 
+#include "cell_scene.h"
 #include "field_worlds.h"
 #include "lidar.h"
 #include "mrpt_terrain/core/describe.h"
@@ -90,6 +92,67 @@ TEST(DividedThings, AGapThatNoBeamHasPassedDividesNothing) {
 // The second post stands behind the first: seen from the sensor there is no gap.
 TEST(DividedThings, WhatStandsBehindIsNotDividedByBeams) {
   EXPECT_TRUE(are_one(things_of(TwoPosts(5.0, -0.2, 0.3, 0.05).seen())));
+}
+
+/// A lawn of 4 m x 4 m and 0.2 m height with something in its middle.
+worlds::CellScene lawn() {
+  worlds::CellScene scene;
+  scene.thing({4.0, 8.0, -2.0, 2.0}, 0.05F, 0.2F);
+  return scene;
+}
+const std::vector<Position2> kLawnAndMiddle{{4.5, -1.5}, {6.1, 0.1}};
+
+TEST(DividedThings, ABoxStandsOutOfTheLawnAroundIt) {
+  worlds::CellScene box = lawn();
+  box.thing({5.8, 6.4, -0.2, 0.4}, 0.05F, 0.6F);
+  EXPECT_TRUE(worlds::all_apart(box.things_at(kLawnAndMiddle)));
+  worlds::CellScene low = lawn();
+  low.thing({5.8, 6.4, -0.2, 0.4}, 0.05F, 0.35F);
+  EXPECT_TRUE(worlds::all_one(low.things_at(kLawnAndMiddle))) << "grass is not as high everywhere";
+  worlds::CellScene flat = lawn();
+  flat.thing({5.8, 6.4, -0.2, 0.4}, 0.5F, 0.6F);
+  EXPECT_TRUE(worlds::all_one(flat.things_at(kLawnAndMiddle))) << "nothing upright is seen";
+}
+
+// It rises by 0.1 m per cell from 0.1 to 0.8 m, and its sides are seen.
+TEST(DividedThings, WhatRisesGraduallyStaysOne) {
+  worlds::CellScene ramp;
+  for (int k = 0; k < 8; ++k) {
+    const double x = 4.0 + 0.2 * k;
+    ramp.thing({x, x + 0.2, -1.0, 1.0}, 0.05F, 0.1F * static_cast<float>(k + 1));
+  }
+  EXPECT_TRUE(worlds::all_one(ramp.things_at({{4.1, 0.1}, {5.5, 0.1}})));
+}
+
+/// Kerbs 0.12 m high, 4 m and 3 m long, with the ground around.
+struct Kerbs {
+  worlds::CellScene scene;
+  explicit Kerbs(const worlds::Rect& first, const worlds::Rect& second, bool sharp = true) {
+    scene.ground({3.0, 9.0, -3.0, 3.0});
+    for (const worlds::Rect& kerb : {first, second}) {
+      scene.thing(kerb, 0.08F, 0.12F);
+      if (sharp) scene.sharp(kerb);
+    }
+  }
+};
+
+TEST(DividedThings, KerbsThatMeetAreTwo) {
+  const worlds::Rect along{4.0, 8.0, -0.2, 0.2}, across{5.8, 6.2, 0.2, 3.0};
+  const std::vector<Position2> places{{4.3, 0.1}, {6.1, 2.5}};
+  EXPECT_TRUE(worlds::all_apart(Kerbs(along, across).scene.things_at(places)));
+  EXPECT_TRUE(worlds::all_one(Kerbs(along, across, false).scene.things_at(places)))
+      << "no edge is sharp";
+}
+
+TEST(DividedThings, KerbsSideBySideAreTwoIfTheGroundIsSeenBetween) {
+  const worlds::Rect first{4.0, 8.0, -0.6, -0.4}, second{4.0, 8.0, 0.2, 0.4};
+  const std::vector<Position2> places{{6.1, -0.5}, {6.1, 0.3}};
+  EXPECT_TRUE(worlds::all_apart(Kerbs(first, second).scene.things_at(places)));
+}
+
+TEST(DividedThings, AnAreaHasNoStrips) {
+  const worlds::Rect first{4.0, 8.0, -1.0, 1.0}, second{4.0, 6.0, 1.0, 2.0};
+  EXPECT_TRUE(worlds::all_one(Kerbs(first, second).scene.things_at({{4.3, 0.1}, {4.3, 1.5}})));
 }
 
 }  // namespace
