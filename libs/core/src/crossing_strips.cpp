@@ -64,12 +64,13 @@ class StripDivider {
       : pieces_(pieces),
         scratch_(pieces.workspace.strips),
         cell_(static_cast<float>(pieces.grid.geometry.cell_size())),
+        fewest_(static_cast<std::int32_t>(std::ceil(kLength / cell_))),
         window_(static_cast<std::int32_t>(std::lround(kWidth * kBinsPerCell / cell_))) {
     pieces.workspace.part_of.assign(pieces.cells.size(), 0);
   }
 
   bool divide(IndexRange slots, const ThingPiece& piece) {
-    if (!may_have_strips(slots, piece)) return false;
+    if (!may_have_strips(slots, piece) || was_divided(slots, piece)) return false;
     place(slots);
     if (!find_strips()) return false;
     give_rest_to_nearest();
@@ -93,6 +94,11 @@ class StripDivider {
            static_cast<float>(ground_cells(slots, piece)) >= kGround * piece.n;
   }
 
+  [[nodiscard]] bool was_divided(IndexRange slots, const ThingPiece& piece) const {
+    return std::any_of(slots.begin(), slots.end(), [&](std::int32_t slot) {
+      return root_of(pieces_.workspace.parent, slot) != piece.slot;
+    });
+  }
   // Cells with ground and nothing else in the rectangle of a piece.
   [[nodiscard]] std::int32_t ground_cells(IndexRange slots, const ThingPiece& piece) const {
     const GridGeometry& geometry = pieces_.grid.geometry;
@@ -135,7 +141,7 @@ class StripDivider {
     while (strips_ < kMostStrips) {
       Strip best;
       for (int k = 0; k < kDirections; ++k) look_along(k, best);
-      if (static_cast<float>(best.occupied) * cell_ < kLength) break;
+      if (best.occupied < fewest_) break;
       take(best);
       if (!is_apart(best)) return false;
       direction_of_[static_cast<std::size_t>(strips_)] = best.direction;
@@ -190,25 +196,25 @@ class StripDivider {
       std::int32_t& next = scratch_.next[static_cast<std::size_t>(scratch_.across[k])];
       scratch_.order[static_cast<std::size_t>(next++)] = scratch_.along[k];
     }
-    // Windows slide over the bins across.
-    scratch_.count.assign(static_cast<std::size_t>(along_bins_), 0);
-    for (std::int32_t bin = 0; bin < across_bins_; ++bin) {
-      add(bin, 1);
-      if (bin >= window_) add(bin - window_, -1);
-      if (bin + 1 >= window_ || bin + 1 == across_bins_) {
-        Strip strip = longest_run();
-        strip.direction = direction;
-        strip.window = std::max(0, bin + 1 - window_);
-        if (strip.is_better_than(best)) best = strip;
-      }
+    for (std::int32_t window = 0; window < std::max(1, across_bins_ - window_ + 1); ++window) {
+      // No more bins along it hold cells than it has cells.
+      if (cells_in(window) < std::max(best.occupied, fewest_)) continue;
+      Strip strip = longest_run(window);
+      strip.direction = direction;
+      strip.window = window;
+      if (strip.is_better_than(best)) best = strip;
     }
   }
-  void add(std::int32_t bin, std::int32_t sign) {
-    const auto b = static_cast<std::size_t>(bin);
-    for (std::int32_t k = scratch_.first[b]; k < scratch_.first[b + 1]; ++k)
-      scratch_.count[static_cast<std::size_t>(scratch_.order[static_cast<std::size_t>(k)])] += sign;
+  [[nodiscard]] std::int32_t end_of(std::int32_t window) const {
+    return scratch_.first[static_cast<std::size_t>(std::min(window + window_, across_bins_))];
   }
-  [[nodiscard]] Strip longest_run() const {
+  [[nodiscard]] std::int32_t cells_in(std::int32_t window) const {
+    return end_of(window) - scratch_.first[static_cast<std::size_t>(window)];
+  }
+  [[nodiscard]] Strip longest_run(std::int32_t window) const {
+    scratch_.count.assign(static_cast<std::size_t>(along_bins_), 0);
+    for (std::int32_t k = scratch_.first[static_cast<std::size_t>(window)]; k < end_of(window); ++k)
+      ++scratch_.count[static_cast<std::size_t>(scratch_.order[static_cast<std::size_t>(k)])];
     Strip best, run;
     for (std::int32_t bin = 0; bin < along_bins_; ++bin) {
       const std::int32_t cells = scratch_.count[static_cast<std::size_t>(bin)];
@@ -273,6 +279,7 @@ class StripDivider {
   const ThingPieces& pieces_;
   StripWorkspace& scratch_;
   float cell_;
+  std::int32_t fewest_;  ///< bins along a strip
   std::int32_t window_;  ///< bins across a strip
   std::int32_t strips_ = 0;
   std::int32_t along_bins_ = 0, across_bins_ = 0;

@@ -9,7 +9,8 @@ namespace mrpt_terrain {
 /// run side by side with the ground seen between them, into these strips. A low area, such as a
 /// ramp or a lawn, stays one.
 /// \param pieces measured and listed; their cells get new parents, so they have to be measured
-/// again \returns whether any was divided
+/// again. Those that were divided since stay as they are.
+/// \returns whether any was divided
 bool divide_crossing_strips(const ThingPieces& pieces);
 
 }  // namespace mrpt_terrain

@@ -59,7 +59,8 @@ struct Linker {
 
 int reach_of(const ElevationGrid& grid, const FieldClusterParams& params, CellIndex index) {
   const Position2 centre = grid.geometry.centre_of(index);
-  const double gap = params.link + params.link_growth * std::hypot(centre.x, centre.y);
+  const double range = std::sqrt(centre.x * centre.x + centre.y * centre.y);
+  const double gap = params.link + params.link_growth * range;
   const int reach = 1 + static_cast<int>(gap / grid.geometry.cell_size());
   return std::min(reach, kMostReach);
 }
@@ -210,13 +211,12 @@ void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& gr
   for (std::size_t slot = 0; slot < n; ++slot)
     unseen.link_back(slot, workspace.raised, workspace.parent);
   const ThingPieces pieces{grid, ground, cells, params, workspace};
+  pieces.find_members();
   pieces.measure();
   pieces.list_cells();
-  if (divide_standing_things(pieces)) {
-    pieces.measure();
-    pieces.list_cells();
-  }
-  if (divide_crossing_strips(pieces)) pieces.measure();
+  const bool standing = divide_standing_things(pieces);
+  const bool crossing = divide_crossing_strips(pieces);
+  if (standing || crossing) pieces.measure();
   link_carried_things(pieces);
   link_loose_things(pieces);
   if (beams) link_continued_things(pieces, *beams);

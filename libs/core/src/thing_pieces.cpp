@@ -94,11 +94,8 @@ void ThingPieces::list_cells() const {
   }
 }
 
-void ThingPieces::measure() const {
-  std::vector<ThingPiece>& pieces = workspace.pieces;
-  pieces.clear();
+void ThingPieces::find_members() const {
   workspace.number_of.assign(cells.size(), -1);
-  Centres centres(grid);
   std::vector<std::int32_t>& members = workspace.points_of;
   members.resize(cells.size());
   std::size_t count = 0;
@@ -107,6 +104,13 @@ void ThingPieces::measure() const {
     count += is_member(slot) ? 1 : 0;
   }
   members.resize(count);
+}
+
+void ThingPieces::measure() const {
+  std::vector<ThingPiece>& pieces = workspace.pieces;
+  pieces.clear();
+  const std::vector<std::int32_t>& members = workspace.points_of;
+  Centres centres(grid);
   for (const std::int32_t member : members) {
     const auto slot = static_cast<std::size_t>(member);
     // The parent of a cell is an earlier one, or itself.

@@ -84,9 +84,11 @@ struct ThingPieces {
   void separate(IndexRange slots, const std::vector<std::int32_t>& part_of,
                 std::size_t parts) const;
 
+  /// Lists the cells of things. Once, before the others.
+  void find_members() const;
   /// Measures the pieces that `parent` has, in the order of their first cells.
   void measure() const;
-  /// Lists their cells, once they are measured.
+  /// Lists their cells by piece, once they are measured.
   void list_cells() const;
 };
 
