@@ -124,35 +124,36 @@ TEST(DividedThings, WhatRisesGraduallyStaysOne) {
   EXPECT_TRUE(worlds::all_one(ramp.things_at({{4.1, 0.1}, {5.5, 0.1}})));
 }
 
-/// Kerbs 0.12 m high, 4 m and 3 m long, with the ground around.
-struct Kerbs {
+/// Kerbs 0.12 m high with the ground around.
+worlds::CellScene kerbs(const std::vector<worlds::Rect>& all, bool sharp = true) {
   worlds::CellScene scene;
-  explicit Kerbs(const worlds::Rect& first, const worlds::Rect& second, bool sharp = true) {
-    scene.ground({3.0, 9.0, -3.0, 3.0});
-    for (const worlds::Rect& kerb : {first, second}) {
-      scene.thing(kerb, 0.08F, 0.12F);
-      if (sharp) scene.sharp(kerb);
-    }
+  scene.ground({3.0, 9.9, -3.0, 9.9});
+  for (const worlds::Rect& kerb : all) {
+    scene.thing(kerb, 0.08F, 0.12F);
+    if (sharp) scene.sharp(kerb);
   }
-};
-
-TEST(DividedThings, KerbsThatMeetAreTwo) {
-  const worlds::Rect along{4.0, 8.0, -0.2, 0.2}, across{5.8, 6.2, 0.2, 3.0};
-  const std::vector<Position2> places{{4.3, 0.1}, {6.1, 2.5}};
-  EXPECT_TRUE(worlds::all_apart(Kerbs(along, across).scene.things_at(places)));
-  EXPECT_TRUE(worlds::all_one(Kerbs(along, across, false).scene.things_at(places)))
-      << "no edge is sharp";
+  return scene;
 }
 
-TEST(DividedThings, KerbsSideBySideAreTwoIfTheGroundIsSeenBetween) {
-  const worlds::Rect first{4.0, 8.0, -0.6, -0.4}, second{4.0, 8.0, 0.2, 0.4};
-  const std::vector<Position2> places{{6.1, -0.5}, {6.1, 0.3}};
-  EXPECT_TRUE(worlds::all_apart(Kerbs(first, second).scene.things_at(places)));
+TEST(DividedThings, KerbsThatMeetAreTwo) {
+  const std::vector<worlds::Rect> meeting{{4.0, 8.0, -0.2, 0.2}, {5.8, 6.2, 0.2, 3.0}};
+  const std::vector<Position2> places{{4.3, 0.1}, {6.1, 2.5}};
+  EXPECT_TRUE(worlds::all_apart(kerbs(meeting).things_at(places)));
+  EXPECT_TRUE(worlds::all_one(kerbs(meeting, false).things_at(places))) << "no edge is sharp";
+}
+
+// So far away, cells with two others between are linked.
+TEST(DividedThings, KerbsSideBySideAreApartIfTheGroundIsSeenBetween) {
+  const std::vector<worlds::Rect> three{
+      {6.0, 9.8, 8.0, 8.2}, {6.0, 9.8, 8.6, 8.8}, {6.0, 9.8, 9.2, 9.4}};
+  const std::vector<Position2> places{{9.5, 8.1}, {9.5, 8.7}, {9.5, 9.3}};
+  EXPECT_TRUE(worlds::all_apart(kerbs(three).things_at(places)));
+  EXPECT_TRUE(worlds::all_one(kerbs(three, false).things_at(places)));
 }
 
 TEST(DividedThings, AnAreaHasNoStrips) {
-  const worlds::Rect first{4.0, 8.0, -1.0, 1.0}, second{4.0, 6.0, 1.0, 2.0};
-  EXPECT_TRUE(worlds::all_one(Kerbs(first, second).scene.things_at({{4.3, 0.1}, {4.3, 1.5}})));
+  const std::vector<worlds::Rect> area{{4.0, 8.0, -1.0, 1.0}, {4.0, 6.0, 1.0, 2.0}};
+  EXPECT_TRUE(worlds::all_one(kerbs(area).things_at({{4.3, 0.1}, {4.3, 1.5}})));
 }
 
 }  // namespace
