@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <vector>
@@ -122,6 +123,17 @@ TEST(DividedThings, WhatRisesGraduallyStaysOne) {
     ramp.thing({x, x + 0.2, -1.0, 1.0}, 0.05F, 0.1F * static_cast<float>(k + 1));
   }
   EXPECT_TRUE(worlds::all_one(ramp.things_at({{4.1, 0.1}, {5.5, 0.1}})));
+}
+
+// Six steps of 0.21 m.
+TEST(DividedThings, StairsStayOne) {
+  worlds::CellScene stairs;
+  for (int k = 0; k < 6; ++k) {
+    const double x = 4.0 + 0.2 * k;
+    const float top = 0.21F * static_cast<float>(k + 1);
+    stairs.thing({x, x + 0.2, -1.0, 1.0}, std::max(0.05F, top - 0.25F), top);
+  }
+  EXPECT_TRUE(worlds::all_one(stairs.things_at({{4.1, 0.1}, {5.1, 0.1}})));
 }
 
 /// Kerbs 0.12 m high with the ground around.

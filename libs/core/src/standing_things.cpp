@@ -20,6 +20,8 @@ constexpr float kUprightShare = 0.5F;
 constexpr float kEdge = 0.5F;
 // Share of the neighbours in which it ends that are lower by a step.
 constexpr float kStepShare = 0.7F;
+// A step is this share of what the part rises by above the low cells; stairs have lower ones.
+constexpr float kStepOfRise = 0.45F;
 
 // Parts of a piece: cells that are low, cells that were looked at and do not stand, standing ones.
 constexpr std::int32_t kLowPart = 0, kRejected = -1, kFirstStanding = 1;
@@ -38,6 +40,7 @@ class StandingDivider {
     find_standing(cells);
     if (borders_.empty()) return false;
     grow();
+    look_at_borders();
     return separate(cells);
   }
 
@@ -126,7 +129,7 @@ class StandingDivider {
            static_cast<float>(upright) >= kUprightShare * static_cast<float>(n);
   }
 
-  // Gives the edges of standing parts to them, all at the same pace, and looks at their borders.
+  // Gives the edges of standing parts to them, all at the same pace.
   void grow() {
     const float edge = low_ + kEdge * (standing_ - low_);
     for (std::size_t k = 0; k < queue_.size(); ++k) {
@@ -137,16 +140,33 @@ class StandingDivider {
         queue_.push_back(other);
       });
     }
+  }
+
+  // How far down the border of each part has to go: a step, and a good part of what it rises by on
+  // average, as one of many steps would not.
+  void find_steps_down() {
+    const std::size_t parts = borders_.size();
+    tops_.assign(2 * parts, 0.0F);
+    for (const std::int32_t slot : queue_) {
+      const auto own = static_cast<std::size_t>(part(slot) - kFirstStanding);
+      tops_[own] += top(slot) - low_;
+      tops_[parts + own] += 1.0F;
+    }
+    for (std::size_t k = 0; k < parts; ++k)
+      tops_[k] = std::max(step_, kStepOfRise * tops_[k] / tops_[parts + k]);
+  }
+
+  void look_at_borders() {
+    find_steps_down();
     for (const std::int32_t slot : queue_) {
       const auto own = static_cast<std::size_t>(part(slot) - kFirstStanding);
       for_neighbours(slot, [&](std::int32_t other) {
         if (part(other) != kLowPart) return;
         ++borders_[own];
-        steps_[own] += top(slot) - top(other) >= step_ ? 1 : 0;
+        steps_[own] += top(slot) - top(other) >= tops_[own] ? 1 : 0;
       });
     }
   }
-
   [[nodiscard]] bool ends_in_step(std::int32_t number) const {
     const auto own = static_cast<std::size_t>(number - kFirstStanding);
     return static_cast<float>(steps_[own]) >= kStepShare * static_cast<float>(borders_[own]);
