@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
+#include <vector>
 
+#include "cell_scene.h"
 #include "field_worlds.h"
 #include "lidar.h"
 #include "mrpt_terrain/core/describe.h"
@@ -90,6 +93,79 @@ TEST(DividedThings, AGapThatNoBeamHasPassedDividesNothing) {
 // The second post stands behind the first: seen from the sensor there is no gap.
 TEST(DividedThings, WhatStandsBehindIsNotDividedByBeams) {
   EXPECT_TRUE(are_one(things_of(TwoPosts(5.0, -0.2, 0.3, 0.05).seen())));
+}
+
+/// A lawn of 4 m x 4 m and 0.2 m height with something in its middle.
+worlds::CellScene lawn() {
+  worlds::CellScene scene;
+  scene.thing({4.0, 8.0, -2.0, 2.0}, 0.05F, 0.2F);
+  return scene;
+}
+const std::vector<Position2> kLawnAndMiddle{{4.5, -1.5}, {6.1, 0.1}};
+
+TEST(DividedThings, ABoxStandsOutOfTheLawnAroundIt) {
+  worlds::CellScene box = lawn();
+  box.thing({5.8, 6.4, -0.2, 0.4}, 0.05F, 0.6F);
+  EXPECT_TRUE(worlds::all_apart(box.things_at(kLawnAndMiddle)));
+  worlds::CellScene low = lawn();
+  low.thing({5.8, 6.4, -0.2, 0.4}, 0.05F, 0.35F);
+  EXPECT_TRUE(worlds::all_one(low.things_at(kLawnAndMiddle))) << "grass is not as high everywhere";
+  worlds::CellScene flat = lawn();
+  flat.thing({5.8, 6.4, -0.2, 0.4}, 0.5F, 0.6F);
+  EXPECT_TRUE(worlds::all_one(flat.things_at(kLawnAndMiddle))) << "nothing upright is seen";
+}
+
+// It rises by 0.1 m per cell from 0.1 to 0.8 m, and its sides are seen.
+TEST(DividedThings, WhatRisesGraduallyStaysOne) {
+  worlds::CellScene ramp;
+  for (int k = 0; k < 8; ++k) {
+    const double x = 4.0 + 0.2 * k;
+    ramp.thing({x, x + 0.2, -1.0, 1.0}, 0.05F, 0.1F * static_cast<float>(k + 1));
+  }
+  EXPECT_TRUE(worlds::all_one(ramp.things_at({{4.1, 0.1}, {5.5, 0.1}})));
+}
+
+// Six steps of 0.21 m.
+TEST(DividedThings, StairsStayOne) {
+  worlds::CellScene stairs;
+  for (int k = 0; k < 6; ++k) {
+    const double x = 4.0 + 0.2 * k;
+    const float top = 0.21F * static_cast<float>(k + 1);
+    stairs.thing({x, x + 0.2, -1.0, 1.0}, std::max(0.05F, top - 0.25F), top);
+  }
+  EXPECT_TRUE(worlds::all_one(stairs.things_at({{4.1, 0.1}, {5.1, 0.1}})));
+}
+
+/// Kerbs 0.12 m high with the ground around.
+worlds::CellScene kerbs(const std::vector<worlds::Rect>& all, bool sharp = true) {
+  worlds::CellScene scene;
+  scene.ground({3.0, 9.9, -3.0, 9.9});
+  for (const worlds::Rect& kerb : all) {
+    scene.thing(kerb, 0.08F, 0.12F);
+    if (sharp) scene.sharp(kerb);
+  }
+  return scene;
+}
+
+TEST(DividedThings, KerbsThatMeetAreTwo) {
+  const std::vector<worlds::Rect> meeting{{4.0, 8.0, -0.2, 0.2}, {5.8, 6.2, 0.2, 3.0}};
+  const std::vector<Position2> places{{4.3, 0.1}, {6.1, 2.5}};
+  EXPECT_TRUE(worlds::all_apart(kerbs(meeting).things_at(places)));
+  EXPECT_TRUE(worlds::all_one(kerbs(meeting, false).things_at(places))) << "no edge is sharp";
+}
+
+// So far away, cells with two others between are linked.
+TEST(DividedThings, KerbsSideBySideAreApartIfTheGroundIsSeenBetween) {
+  const std::vector<worlds::Rect> three{
+      {6.0, 9.8, 8.0, 8.2}, {6.0, 9.8, 8.6, 8.8}, {6.0, 9.8, 9.2, 9.4}};
+  const std::vector<Position2> places{{9.5, 8.1}, {9.5, 8.7}, {9.5, 9.3}};
+  EXPECT_TRUE(worlds::all_apart(kerbs(three).things_at(places)));
+  EXPECT_TRUE(worlds::all_one(kerbs(three, false).things_at(places)));
+}
+
+TEST(DividedThings, AnAreaHasNoStrips) {
+  const std::vector<worlds::Rect> area{{4.0, 8.0, -1.0, 1.0}, {4.0, 6.0, 1.0, 2.0}};
+  EXPECT_TRUE(worlds::all_one(kerbs(area).things_at({{4.3, 0.1}, {4.3, 1.5}})));
 }
 
 }  // namespace

@@ -2,133 +2,19 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
-#include <cstdint>
 #include <vector>
 
-#include "mrpt_terrain/core/field_clusters.h"
-#include "worlds.h"
+#include "cell_scene.h"
 
 namespace mrpt_terrain {
 namespace {
 
 using worlds::Rect;
 
-constexpr int kSide = 100;
-constexpr double kCell = 0.2;
-
-/// What is seen in cells of 0.2 m on 20 m x 20 m, on level ground at z = 0.
-class Scene {
- public:
-  /// Ground is seen in a rectangle.
-  void ground(const Rect& rect) {
-    for_cells(rect, [](Cell& cell) { cell.on = 1; });
-  }
-  /// Points from `low` to `high` above the ground are seen in a rectangle.
-  void thing(const Rect& rect, float low, float high) {
-    for_cells(rect, [&](Cell& cell) {
-      cell.above = 5;
-      cell.low = low;
-      cell.high = high;
-    });
-  }
-  /// What is above the ground in a rectangle is no higher than the ground around.
-  void level(const Rect& rect) {
-    for_cells(rect, [](Cell& cell) { cell.level = 1; });
-  }
-
-  /// Numbers of the things at some places.
-  [[nodiscard]] std::vector<std::int32_t> things_at(
-      const std::vector<Position2>& places, const std::array<float, 3>* sensor = nullptr) const {
-    const Cells cells = build();
-    Clusters clusters;
-    FieldClusterWorkspace workspace;
-    find_field_clusters(cells.grid, cells.ground, cells.field, FieldClusterParams{}, workspace,
-                        clusters, sensor);
-    std::vector<std::int32_t> result;
-    for (const Position2& place : places) {
-      CellIndex at;
-      EXPECT_TRUE(cells.grid.geometry.cell_at(place.x, place.y, at));
-      const Slot slot = cells.grid.slot_at(at);
-      EXPECT_NE(slot, kUnobserved) << place.x << ' ' << place.y;
-      result.push_back(clusters.cluster_of[static_cast<std::size_t>(slot)]);
-    }
-    return result;
-  }
-
- private:
-  struct Cell {
-    std::int32_t on = 0, above = 0;
-    float low = 0.0F, high = 0.0F;
-    std::uint8_t level = 0;
-  };
-  struct Cells {
-    ElevationGrid grid;
-    GroundSegmentation ground;
-    FieldCells field;
-  };
-
-  template <class F>
-  void for_cells(const Rect& rect, F&& f) {
-    for (int l = 0; l < kSide; ++l) {
-      for (int w = 0; w < kSide; ++w) {
-        const Position2 at = geometry().centre_of({l, w});
-        if (worlds::inside(rect, at.x, at.y)) f(cells_[static_cast<std::size_t>(l * kSide + w)]);
-      }
-    }
-  }
-  [[nodiscard]] static GridGeometry geometry() {
-    return GridGeometry(kSide * kCell, kSide * kCell, kCell);
-  }
-  [[nodiscard]] Cells build() const {
-    Cells result;
-    result.grid.geometry = geometry();
-    result.grid.slot_of.assign(static_cast<std::size_t>(geometry().array_size()), kUnobserved);
-    FieldCells& field = result.field;
-    for (int l = 0; l < kSide; ++l) {
-      for (int w = 0; w < kSide; ++w) {
-        const Cell& cell = cells_[static_cast<std::size_t>(l * kSide + w)];
-        if (cell.on + cell.above == 0) continue;
-        const CellId id = geometry().id_of({l, w});
-        result.grid.slot_of[static_cast<std::size_t>(value_of(id))] =
-            static_cast<Slot>(result.grid.cell.size());
-        result.grid.cell.push_back(id);
-        result.ground.rule.push_back(cell.above > 0 ? GroundRule::kHigh : GroundRule::kGround);
-        field.on.push_back(cell.on);
-        field.above.push_back(cell.above);
-        field.low.push_back(cell.low);
-        field.high.push_back(cell.high);
-        field.level.push_back(cell.level);
-      }
-    }
-    const std::size_t n = result.grid.observed();
-    for (auto* values :
-         {&field.ground, &field.floor, &field.rim, &field.raised_low, &field.raised_high})
-      values->assign(n, 0.0F);
-    for (auto* counts : {&field.below, &field.raised}) counts->assign(n, 0);
-    for (auto* counts : {&field.sharp_edges, &field.smooth_edges}) counts->assign(n, 0);
-    field.deck.assign(n, -1);
-    return result;
-  }
-
-  std::vector<Cell> cells_ = std::vector<Cell>(kSide * kSide);
-};
-
-/// A cell about a place.
-Rect at(double x, double y) { return {x - 0.05, x + 0.05, y - 0.05, y + 0.05}; }
-
-bool all_one(const std::vector<std::int32_t>& things) {
-  for (const std::int32_t thing : things)
-    if (thing != things.front() || thing == kNoCluster) return false;
-  return true;
-}
-bool all_apart(const std::vector<std::int32_t>& things) {
-  for (std::size_t a = 0; a < things.size(); ++a) {
-    for (std::size_t b = 0; b <= a; ++b)
-      if (things[a] == kNoCluster || (a != b && things[a] == things[b])) return false;
-  }
-  return true;
-}
+using worlds::all_apart;
+using worlds::all_one;
+using worlds::at;
+using Scene = worlds::CellScene;
 
 // Of a table's top 0.8 m high, a ring in the middle is seen, and two of its legs 0.5 m beside.
 struct Table {
@@ -255,6 +141,44 @@ TEST(LinkedThings, ACurbGoesOnBetweenTwoRings) {
   EXPECT_TRUE(all_apart(interrupted.things())) << "the ground is seen between";
   EXPECT_TRUE(all_apart(Curb(5.8, 0.2F).things())) << "not as high";
   EXPECT_TRUE(all_apart(Curb(7.0).things())) << "too far";
+}
+
+/// Two walls along x, `apart` metres from each other; the second begins at `begin`.
+struct Abutments {
+  Scene scene;
+  std::vector<Position2> places;
+  explicit Abutments(double begin = 3.0, float high = 2.0F, double apart = 3.0)
+      : places{{4.1, -1.5}, {begin + 1.1, apart - 1.5}} {
+    scene.thing({3.0, 6.0, -1.6, -1.4}, 0.05F, 2.0F);
+    scene.thing({begin, begin + 3.0, apart - 1.6, apart - 1.4}, 0.05F, high);
+    scene.ground({2.0, 7.0, -1.0, 1.0});
+  }
+};
+
+TEST(LinkedThings, TwoWallsThatAreAlikeAndOppositeEachOtherCarryADeck) {
+  const Abutments bridge;
+  EXPECT_TRUE(all_one(bridge.scene.things_at(bridge.places)));
+  const Abutments lower(3.0, 1.5F), shifted(3.6), wide(3.0, 2.0F, 6.4);
+  for (const Abutments* street : {&lower, &shifted, &wide})
+    EXPECT_TRUE(all_apart(street->scene.things_at(street->places)));
+}
+
+/// Two pieces of a lawn, the first 0.2 m high, with a point on the ground between.
+std::vector<std::int32_t> lawn(float second, double gap, bool sharp) {
+  Scene scene;
+  const Rect near{4.0, 4.4, -1.0, 1.0}, far{4.4 + gap, 4.8 + gap, -1.0, 1.0};
+  scene.thing(near, 0.05F, 0.2F);
+  scene.thing(far, 0.05F, second);
+  scene.ground(at(4.7, 0.1));
+  if (sharp) scene.sharp(near);
+  return scene.things_at({{4.1, 0.1}, {4.5 + gap, 0.1}});
+}
+
+TEST(LinkedThings, PiecesOfALawnAreOneIfTheyAreAsHigh) {
+  EXPECT_TRUE(all_one(lawn(0.22F, 0.8, false)));
+  EXPECT_TRUE(all_apart(lawn(0.3F, 0.8, false))) << "not as high";
+  EXPECT_TRUE(all_apart(lawn(0.22F, 1.2, false))) << "too far";
+  EXPECT_TRUE(all_apart(lawn(0.22F, 0.8, true))) << "kerbs have sharp edges";
 }
 
 TEST(LinkedThings, WhatIsNoHigherThanTheGroundAroundIsNone) {

@@ -19,6 +19,14 @@ constexpr float kShortSide = 0.4F, kLongSide = 2.0F;
 constexpr float kAsHigh = 0.15F;
 constexpr float kCorner = 0.25F;
 constexpr float kSquare = 0.2F;
+// Two walls that carry a deck: at least so long, and so many times as long as wide, so far apart,
+// and their ends at most so far from opposite, metres; sine of the angle between them, and by which
+// share their heights may differ.
+constexpr float kWallLength = 1.5F, kSlender = 2.5F;
+constexpr float kNarrowSpan = 1.5F, kWideSpan = 5.0F;
+constexpr float kOpposite = 0.3F;
+constexpr float kParallel = 0.1F;
+constexpr float kTopShare = 0.15F;
 
 bool is_post(const ThingPiece& piece, const FieldClusterParams& params) {
   return piece.end - piece.begin <= kLegWidth && piece.left - piece.right <= kLegWidth &&
@@ -81,6 +89,49 @@ void link_rectangles(const ThingPieces& pieces) {
   }
 }
 
+bool is_wall(const ThingPiece& piece, const FieldClusterParams& params, float cell) {
+  const float length = piece.end - piece.begin + cell;
+  return piece.high > static_cast<float>(params.step) && length >= kWallLength &&
+         length >= kSlender * (piece.left - piece.right + cell);
+}
+
+// Whether two walls are as long and as high as each other, and opposite.
+bool are_abutments(const ThingPiece& a, const ThingPiece& b) {
+  if (std::abs(a.high - b.high) > std::max(kAsHigh, kTopShare * std::max(a.high, b.high)) ||
+      std::abs(a.along_x * b.along_y - a.along_y * b.along_x) > kParallel)
+    return false;
+  float begin = 1e9F, end = -1e9F, right = 1e9F, left = -1e9F;
+  for (const float along : {b.begin, b.end}) {
+    for (const float across : {b.right, b.left}) {
+      const Position2 corner = b.place(along, across);
+      const auto x = static_cast<float>(corner.x), y = static_cast<float>(corner.y);
+      begin = std::min(begin, a.along_of(x, y));
+      end = std::max(end, a.along_of(x, y));
+      right = std::min(right, a.across_of(x, y));
+      left = std::max(left, a.across_of(x, y));
+    }
+  }
+  const float span = std::max(right - a.left, a.right - left);
+  return std::abs(begin - a.begin) <= kOpposite && std::abs(end - a.end) <= kOpposite &&
+         span >= kNarrowSpan && span <= kWideSpan;
+}
+
+void link_abutments(const ThingPieces& pieces) {
+  std::vector<std::int32_t>& walls = pieces.workspace.posts;
+  walls.clear();
+  const auto cell = static_cast<float>(pieces.grid.geometry.cell_size());
+  for (std::size_t k = 0; k < pieces.all().size(); ++k)
+    if (is_wall(pieces.all()[k], pieces.params, cell))
+      walls.push_back(static_cast<std::int32_t>(k));
+  for (std::size_t b = 1; b < walls.size(); ++b) {
+    const ThingPiece& second = pieces.all()[static_cast<std::size_t>(walls[b])];
+    for (std::size_t a = 0; a < b; ++a) {
+      const ThingPiece& first = pieces.all()[static_cast<std::size_t>(walls[a])];
+      if (are_abutments(first, second)) pieces.unite(first.slot, second.slot);
+    }
+  }
+}
+
 }  // namespace
 
 void link_carried_things(const ThingPieces& pieces) {
@@ -91,6 +142,7 @@ void link_carried_things(const ThingPieces& pieces) {
   for (const std::int32_t post : posts)
     link_to_hanging(pieces, pieces.all()[static_cast<std::size_t>(post)]);
   link_rectangles(pieces);
+  link_abutments(pieces);
 }
 
 }  // namespace mrpt_terrain

@@ -7,7 +7,10 @@
 
 #include "carried_things.h"
 #include "continued_things.h"
+#include "crossing_strips.h"
 #include "length_of.h"
+#include "loose_things.h"
+#include "standing_things.h"
 #include "thing_pieces.h"
 
 namespace mrpt_terrain {
@@ -167,10 +170,8 @@ void number_things(const FieldClusterParams& params, FieldClusterWorkspace& work
     const std::int32_t cells = workspace.cells_of[root];
     if (cells == 0) continue;
     const std::int32_t edges = workspace.sharp_of[root] + workspace.smooth_of[root];
-    // Where no edge is sharp, or none is seen, nothing tells raised ground from a swell.
-    const bool swell =
-        5 * workspace.above_of[root] < workspace.points_of[root] &&
-        (workspace.sharp_of[root] == 0 || workspace.sharp_of[root] < params.sharp * edges);
+    const bool swell = is_swell(workspace.above_of[root], workspace.points_of[root],
+                                workspace.sharp_of[root], edges, params);
     const bool level = workspace.stands[root] == 0;
     if (level || swell || (cells < params.t_c && workspace.points_of[root] < params.t_points)) {
       ++result.dropped;
@@ -210,8 +211,14 @@ void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& gr
   for (std::size_t slot = 0; slot < n; ++slot)
     unseen.link_back(slot, workspace.raised, workspace.parent);
   const ThingPieces pieces{grid, ground, cells, params, workspace};
+  pieces.find_members();
   pieces.measure();
+  pieces.list_cells();
+  const bool standing = divide_standing_things(pieces);
+  const bool crossing = divide_crossing_strips(pieces);
+  if (standing || crossing) pieces.measure();
   link_carried_things(pieces);
+  link_loose_things(pieces);
   if (beams) link_continued_things(pieces, *beams);
   count_members(linker, workspace);
   number_things(params, workspace, result);

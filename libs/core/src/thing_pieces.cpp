@@ -67,11 +67,35 @@ class Centres {
 
 }  // namespace
 
-void ThingPieces::measure() const {
-  std::vector<ThingPiece>& pieces = workspace.pieces;
-  pieces.clear();
+void ThingPieces::separate(IndexRange slots, const std::vector<std::int32_t>& part_of,
+                           std::size_t parts) const {
+  std::vector<std::int32_t>& first = workspace.first_of;
+  first.assign(parts, -1);
+  for (const std::int32_t item : slots) {
+    const auto slot = static_cast<std::size_t>(item);
+    std::int32_t& root = first[static_cast<std::size_t>(part_of[slot])];
+    if (root < 0) root = item;
+    workspace.parent[slot] = root;
+  }
+}
+
+void ThingPieces::list_cells() const {
+  IndexRows& rows = workspace.piece_cells;
+  const std::vector<std::int32_t>& members = workspace.points_of;
+  rows.first.assign(1, 0);
+  for (const ThingPiece& piece : workspace.pieces)
+    rows.first.push_back(rows.first.back() + static_cast<std::int32_t>(piece.n));
+  rows.items.resize(members.size());
+  std::vector<std::int32_t>& next = workspace.first_of;
+  next.assign(rows.first.begin(), rows.first.end());
+  for (const std::int32_t member : members) {
+    const std::int32_t number = workspace.number_of[static_cast<std::size_t>(member)];
+    rows.items[static_cast<std::size_t>(next[static_cast<std::size_t>(number)]++)] = member;
+  }
+}
+
+void ThingPieces::find_members() const {
   workspace.number_of.assign(cells.size(), -1);
-  Centres centres(grid);
   std::vector<std::int32_t>& members = workspace.points_of;
   members.resize(cells.size());
   std::size_t count = 0;
@@ -80,6 +104,13 @@ void ThingPieces::measure() const {
     count += is_member(slot) ? 1 : 0;
   }
   members.resize(count);
+}
+
+void ThingPieces::measure() const {
+  std::vector<ThingPiece>& pieces = workspace.pieces;
+  pieces.clear();
+  const std::vector<std::int32_t>& members = workspace.points_of;
+  Centres centres(grid);
   for (const std::int32_t member : members) {
     const auto slot = static_cast<std::size_t>(member);
     // The parent of a cell is an earlier one, or itself.
@@ -97,6 +128,10 @@ void ThingPieces::measure() const {
     workspace.number_of[slot] = number;
     ThingPiece& piece = pieces[static_cast<std::size_t>(number)];
     piece.add(centres.x, centres.y, cells.ground[slot], low_of(cells, slot), high_of(cells, slot));
+    piece.above += static_cast<float>(cells.above[slot]);
+    piece.raised += static_cast<float>(cells.raised[slot]);
+    piece.sharp += static_cast<float>(cells.sharp_edges[slot]);
+    piece.edges += static_cast<float>(cells.sharp_edges[slot] + cells.smooth_edges[slot]);
     piece.hangs = piece.hangs || (cells.on[slot] > 0 && hangs(slot));
   }
   for (ThingPiece& piece : pieces) piece.finish();

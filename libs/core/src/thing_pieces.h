@@ -40,6 +40,13 @@ inline float high_of(const FieldCells& cells, std::size_t slot) {
   return std::max(cells.high[slot], cells.raised_high[slot]);
 }
 
+/// Whether something is a swell of the ground: raised ground for the most part. Where no edge is
+/// sharp, or none is seen, nothing tells the two apart.
+template <class T>
+bool is_swell(T above, T points, T sharp, T edges, const FieldClusterParams& params) {
+  return 5 * above < points && (sharp == 0 || sharp < params.sharp * edges);
+}
+
 /// The pieces that cells have been brought together to, and what they lie in.
 struct ThingPieces {
   const ElevationGrid& grid;
@@ -71,8 +78,18 @@ struct ThingPieces {
   }
   void unite(std::int32_t a, std::int32_t b) const { mrpt_terrain::unite(workspace.parent, a, b); }
 
+  /// Makes things of the parts of a piece.
+  /// \param slots of the piece, ascending
+  /// \param part_of per slot: which part it is of, below `parts`
+  void separate(IndexRange slots, const std::vector<std::int32_t>& part_of,
+                std::size_t parts) const;
+
+  /// Lists the cells of things. Once, before the others.
+  void find_members() const;
   /// Measures the pieces that `parent` has, in the order of their first cells.
   void measure() const;
+  /// Lists their cells by piece, once they are measured.
+  void list_cells() const;
 };
 
 }  // namespace mrpt_terrain

@@ -56,10 +56,12 @@ struct ThingPiece {
   float n = 0.0F;                        ///< cells
   float x = 0.0F, y = 0.0F;              ///< mean
   float xx = 0.0F, xy = 0.0F, yy = 0.0F;
-  float ground = 0.0F;             ///< mean height of the ground reference
-  float top = 0.0F;                ///< mean over the cells of their highest points above it
-  float low = 1e9F, high = -1e9F;  ///< lowest and highest point above it
-  bool hangs = false;              ///< some of it lies flat above ground that is seen
+  float ground = 0.0F;                ///< mean height of the ground reference
+  float top = 0.0F;                   ///< mean over the cells of their highest points above it
+  float low = 1e9F, high = -1e9F;     ///< lowest and highest point above it
+  float above = 0.0F, raised = 0.0F;  ///< points above the ground, and of raised ground
+  float sharp = 0.0F, edges = 0.0F;   ///< sharp edges of its cells, and all (FieldCells)
+  bool hangs = false;                 ///< some of it lies flat above ground that is seen
   float along_x = 1.0F, along_y = 0.0F;
   float begin = 1e9F, end = -1e9F, right = 1e9F, left = -1e9F;  ///< of the rectangle, about x, y
 
@@ -75,10 +77,23 @@ struct ThingPiece {
   [[nodiscard]] float across_of(float px, float py) const {
     return (py - y) * along_x - (px - x) * along_y;
   }
+  [[nodiscard]] bool holds(float px, float py) const {
+    const float u = along_of(px, py), v = across_of(px, py);
+    return u >= begin && u <= end && v >= right && v <= left;
+  }
   [[nodiscard]] Position2 place(float along, float across) const {
     return {static_cast<double>(x + along * along_x - across * along_y),
             static_cast<double>(y + along * along_y + across * along_x)};
   }
+};
+
+/// Scratch memory for strips of a piece; arrays over its cells, or over bins along and across them.
+struct StripWorkspace {
+  std::vector<float> x, y;             ///< centres, metres
+  std::vector<float> u, v;             ///< the same along and across a direction
+  std::vector<std::int32_t> strip_of;  ///< number of the strip, or -1
+  std::vector<std::int32_t> along, across;
+  std::vector<std::int32_t> first, next, order, count;
 };
 
 /// Scratch memory of `find_field_clusters`.
@@ -91,7 +106,13 @@ struct FieldClusterWorkspace {
   std::vector<std::int32_t> sharp_of, smooth_of, above_of;
   std::vector<std::uint8_t> stands;  ///< per slot: 1 if a cell of the thing is not level
   std::vector<ThingPiece> pieces;
-  std::vector<std::int32_t> posts;  ///< numbers of pieces
+  std::vector<std::int32_t> posts;                ///< numbers of pieces
+  IndexRows piece_cells;                          ///< per piece: its slots, ascending
+  std::vector<std::int32_t> part_of;              ///< per slot: part of its piece
+  std::vector<std::int32_t> first_of;             ///< first slots of parts
+  std::vector<float> tops;                        ///< metres
+  std::vector<std::int32_t> border_of, steps_of;  ///< per part: neighbours, and lower ones
+  StripWorkspace strips;
 };
 
 /// Brings non-ground cells together that are near each other, in the plane and in height. Cells
