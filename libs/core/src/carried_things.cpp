@@ -19,10 +19,11 @@ constexpr float kShortSide = 0.4F, kLongSide = 2.0F;
 constexpr float kAsHigh = 0.15F;
 constexpr float kCorner = 0.25F;
 constexpr float kSquare = 0.2F;
-// Two walls that carry a deck: at least so long, and so many times as long as wide, so far apart,
-// and their ends at most so far from opposite, metres; sine of the angle between them, and by which
-// share their heights may differ.
-constexpr float kWallLength = 1.5F, kSlender = 2.5F;
+// Two walls that carry a deck: so high, so long (longer ones line corridors and streets), so many
+// times as long as wide, so far apart, and their ends at most so far from opposite, metres; sine of
+// the angle between them, and by which share their heights may differ.
+constexpr float kWallHeight = 0.8F;
+constexpr float kWallLength = 1.5F, kMostWallLength = 6.0F, kSlender = 2.5F;
 constexpr float kNarrowSpan = 1.5F, kWideSpan = 5.0F;
 constexpr float kOpposite = 0.3F;
 constexpr float kParallel = 0.1F;
@@ -89,9 +90,9 @@ void link_rectangles(const ThingPieces& pieces) {
   }
 }
 
-bool is_wall(const ThingPiece& piece, const FieldClusterParams& params, float cell) {
+bool is_wall(const ThingPiece& piece, float cell) {
   const float length = piece.end - piece.begin + cell;
-  return piece.high > static_cast<float>(params.step) && length >= kWallLength &&
+  return piece.high > kWallHeight && length >= kWallLength && length <= kMostWallLength &&
          length >= kSlender * (piece.left - piece.right + cell);
 }
 
@@ -121,8 +122,7 @@ void link_abutments(const ThingPieces& pieces) {
   walls.clear();
   const auto cell = static_cast<float>(pieces.grid.geometry.cell_size());
   for (std::size_t k = 0; k < pieces.all().size(); ++k)
-    if (is_wall(pieces.all()[k], pieces.params, cell))
-      walls.push_back(static_cast<std::int32_t>(k));
+    if (is_wall(pieces.all()[k], cell)) walls.push_back(static_cast<std::int32_t>(k));
   for (std::size_t b = 1; b < walls.size(); ++b) {
     const ThingPiece& second = pieces.all()[static_cast<std::size_t>(walls[b])];
     for (std::size_t a = 0; a < b; ++a) {
