@@ -36,7 +36,7 @@ constexpr std::size_t kMostRingPoints = 256;
 // Rings on sides have so many points at least, and are lower at both ends than in between by this,
 // metres...
 constexpr std::size_t kFewestOfRing = 12;
-constexpr float kLeastFall = 0.02F;
+constexpr float kLeastFall = 0.01F;
 // ...and by more than they bend seen from above, by this factor: faces are steeper than 63 deg...
 constexpr float kSteepFace = 2.0F;
 // ...and this share of the surface up to so far beside, metres, is theirs: rings that cross a ridge

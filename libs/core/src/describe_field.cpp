@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "climbed_sides.h"
 #include "describe_stages.h"
 #include "thing_parts.h"
 #include "things.h"
@@ -50,6 +51,8 @@ void label_field_points(const PointsView& points, const DeckParams& decks,
   result.support = workspace.field.points.support;
   label_deck_points(points, workspace.field.points, workspace.point_slots, description.grid,
                     description.field, decks, workspace.decks, result.support);
+  label_climbed_sides(workspace.field, static_cast<float>(decks.side), workspace.decks,
+                      result.support);
   result.reason.resize(n);
   result.terrain_class.resize(n);
   result.cluster.resize(n);

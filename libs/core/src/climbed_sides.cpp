@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "climbed_sides.h"
+
+#include <cstddef>
+#include <cstdint>
+
+#include "deck_sides.h"
+#include "surface_levels.h"
+
+namespace mrpt_terrain {
+namespace {
+
+// The level of 3.2 m hardly follows a curb...
+constexpr int kBaseLevel = 3;
+// ...so that the reference on it, and points of its side, are this much higher, metres.
+constexpr float kLeastRise = 0.03F, kLeastHeight = 0.05F;
+// Lines are sought in blocks of cells of this level, 6.4 m.
+constexpr int kBlockLevel = 4;
+
+/// Calls `visit` with the points of the ground that may be of such a side.
+template <class Visitor>
+void for_candidates(const FieldWorkspace& field, Visitor&& visit) {
+  const GroundSurface& surface = field.surface;
+  const LevelView base = view_of_level(field.surface_workspace, surface.lattice(), kBaseLevel);
+  const CellPoints& cells = surface.cells;
+  const std::int32_t blocks = surface.lattice().side >> kBlockLevel;
+  for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
+    const LatticeCell cell = cells.cell[slot];
+    const float rise = surface.node[cells.number_of(cell)] - base.at_cell(cell, kBaseLevel).height;
+    if (rise < kLeastRise) continue;
+    const std::int32_t block = (cell.row >> kBlockLevel) * blocks + (cell.column >> kBlockLevel);
+    for (auto k = static_cast<std::size_t>(cells.first[slot]);
+         k < static_cast<std::size_t>(cells.first[slot + 1]); ++k) {
+      const CellPoint& p = cells.points[k];
+      if (field.support[k] == Support::kGround && p.z - base.at(p.x, p.y).height >= kLeastHeight)
+        visit(DeckSidePoint{block, p.index, p.x, p.y, p.z});
+    }
+  }
+}
+
+}  // namespace
+
+void label_climbed_sides(const FieldWorkspace& field, float reach, DeckWorkspace& workspace,
+                         std::vector<Support>& support) {
+  workspace.surface_points.clear();
+  workspace.sides.clear();
+  for_candidates(field, [&workspace](const DeckSidePoint& point) {
+    workspace.surface_points.push_back(point);
+  });
+  find_side_rings(reach, workspace.surface_points, workspace.sides);
+  if (workspace.sides.empty()) return;
+  for_candidates(field, [&](const DeckSidePoint& point) {
+    if (is_on_side(workspace.sides, point.deck, point.x, point.y, reach))
+      support[static_cast<std::size_t>(point.point)] = Support::kAbove;
+  });
+}
+
+}  // namespace mrpt_terrain
