@@ -22,6 +22,13 @@ constexpr float kTopShare = 0.3F;
 constexpr float kLow = 0.3F, kLowWidth = 0.8F;
 constexpr float kRingGap = 2.0F;
 constexpr float kFewestCells = 2.0F;
+// What lies in the strip of a larger low thing, which is so many times as long as wide: how much of
+// the ground it may cover, square metres, by how much it may reach out of the strip to the sides,
+// and how far it may be off along it, metres.
+constexpr float kStripSlender = 2.0F;
+constexpr float kPieceArea = 1.2F;
+constexpr float kStripMargin = 0.3F;
+constexpr float kStripGap = 1.2F;
 
 /// A line along which two things may be one; places on it are metres from the middle of the first.
 struct Line {
@@ -86,12 +93,8 @@ class Continuation {
   }
 
   void link_low_things() const {
-    std::vector<std::int32_t>& low = pieces_.workspace.posts;
-    low.clear();
+    const std::vector<std::int32_t>& low = low_things(kFewestCells);
     const std::vector<ThingPiece>& all = pieces_.all();
-    for (std::size_t k = 0; k < all.size(); ++k)
-      if (all[k].high <= kLow && all[k].n >= kFewestCells)
-        low.push_back(static_cast<std::int32_t>(k));
     for (std::size_t b = 1; b < low.size(); ++b) {
       const ThingPiece& q = all[static_cast<std::size_t>(low[b])];
       for (std::size_t a = 0; a < b; ++a) {
@@ -104,7 +107,52 @@ class Continuation {
     }
   }
 
+  void link_to_strips() const {
+    const std::vector<std::int32_t>& low = low_things(1.0F);
+    for (const std::int32_t number : low) {
+      const ThingPiece& piece = pieces_.all()[static_cast<std::size_t>(number)];
+      if (piece.n * cell_ * cell_ > kPieceArea) continue;
+      const ThingPiece* nearest = nullptr;
+      float least = kStripGap;
+      for (const std::int32_t other : low) {
+        const ThingPiece& strip = pieces_.all()[static_cast<std::size_t>(other)];
+        const float off = other == number ? 2.0F * kStripGap : off_strip(piece, strip);
+        if (off > least || (nearest != nullptr && off == least)) continue;
+        nearest = &strip;
+        least = off;
+      }
+      if (nearest != nullptr) pieces_.unite(piece.slot, nearest->slot);
+    }
+  }
+
  private:
+  // Numbers of the low pieces of so many cells.
+  [[nodiscard]] const std::vector<std::int32_t>& low_things(float fewest) const {
+    std::vector<std::int32_t>& low = pieces_.workspace.posts;
+    low.clear();
+    const std::vector<ThingPiece>& all = pieces_.all();
+    for (std::size_t k = 0; k < all.size(); ++k)
+      if (all[k].high <= kLow && all[k].n >= fewest) low.push_back(static_cast<std::int32_t>(k));
+    return low;
+  }
+
+  // How far a low piece lies from another one along the strip of that; more than the widest gap if
+  // it is none of its kind.
+  [[nodiscard]] float off_strip(const ThingPiece& piece, const ThingPiece& strip) const {
+    constexpr float kOff = 2.0F * kStripGap;
+    const float length = strip.end - strip.begin + cell_;
+    const float reach = kStripGap + length + piece.end - piece.begin;
+    const float dx = piece.x - strip.x, dy = piece.y - strip.y;
+    if (length < kLong || length < kStripSlender * (strip.left - strip.right + cell_) ||
+        dx * dx + dy * dy > reach * reach || piece.n > strip.n || piece.high > strip.high + level_)
+      return kOff;
+    Extent extent;
+    extent.add(piece, {strip.x, strip.y, strip.along_x, strip.along_y});
+    if (extent.right < strip.right - kStripMargin || extent.left > strip.left + kStripMargin)
+      return kOff;
+    return std::max({0.0F, extent.begin - strip.end, strip.begin - extent.end});
+  }
+
   // Looks along a long thing, from its end on, for what it goes on with.
   void follow(const ThingPiece& piece, const Line& line, float end) const {
     const float length = piece.end - piece.begin + cell_;
@@ -188,6 +236,7 @@ void link_continued_things(const ThingPieces& pieces, const PassedBeams& beams) 
   const Continuation continuation(pieces, beams);
   continuation.link_long_things();
   continuation.link_low_things();
+  continuation.link_to_strips();
 }
 
 }  // namespace mrpt_terrain
