@@ -24,11 +24,12 @@ constexpr float kRingGap = 2.0F;
 constexpr float kFewestCells = 2.0F;
 // What lies in the strip of a larger low thing, which is so many times as long as wide: how much of
 // the ground it may cover, square metres, by how much it may reach out of the strip to the sides,
-// and how far it may be off along it, metres.
+// and how far it may be from it, metres; farther if it is ground that is raised, as curbs are.
 constexpr float kStripSlender = 2.0F;
 constexpr float kPieceArea = 1.2F;
 constexpr float kStripMargin = 0.3F;
-constexpr float kStripGap = 1.2F;
+constexpr float kStripGap = 1.2F, kRaisedGap = 3.0F;
+constexpr float kFar = 1e9F;
 
 /// A line along which two things may be one; places on it are metres from the middle of the first.
 struct Line {
@@ -112,14 +113,16 @@ class Continuation {
     for (const std::int32_t number : low) {
       const ThingPiece& piece = pieces_.all()[static_cast<std::size_t>(number)];
       if (piece.n * cell_ * cell_ > kPieceArea) continue;
+      const float widest = piece.above > 0.0F ? kStripGap : kRaisedGap;
       const ThingPiece* nearest = nullptr;
-      float least = kStripGap;
+      float least = widest;
       for (const std::int32_t other : low) {
         const ThingPiece& strip = pieces_.all()[static_cast<std::size_t>(other)];
-        const float off = other == number ? 2.0F * kStripGap : off_strip(piece, strip);
-        if (off > least || (nearest != nullptr && off == least)) continue;
+        if (other == number || !is_in_strip(piece, strip, widest)) continue;
+        const float gap = gap_to(piece, strip, widest);
+        if (gap > least) continue;
         nearest = &strip;
-        least = off;
+        least = gap;
       }
       if (nearest != nullptr) pieces_.unite(piece.slot, nearest->slot);
     }
@@ -136,21 +139,37 @@ class Continuation {
     return low;
   }
 
-  // How far a low piece lies from another one along the strip of that; more than the widest gap if
-  // it is none of its kind.
-  [[nodiscard]] float off_strip(const ThingPiece& piece, const ThingPiece& strip) const {
-    constexpr float kOff = 2.0F * kStripGap;
+  // Whether a low piece lies in the strip of another one, and is lower.
+  [[nodiscard]] bool is_in_strip(const ThingPiece& piece, const ThingPiece& strip,
+                                 float widest) const {
     const float length = strip.end - strip.begin + cell_;
-    const float reach = kStripGap + length + piece.end - piece.begin;
-    const float dx = piece.x - strip.x, dy = piece.y - strip.y;
     if (length < kLong || length < kStripSlender * (strip.left - strip.right + cell_) ||
-        dx * dx + dy * dy > reach * reach || piece.n > strip.n || piece.high > strip.high + level_)
-      return kOff;
+        piece.n > strip.n || piece.high > strip.high + level_)
+      return false;
+    const float dx = piece.x - strip.x, dy = piece.y - strip.y;
+    const float reach = widest + length + piece.end - piece.begin;
+    if (dx * dx + dy * dy > reach * reach) return false;
     Extent extent;
     extent.add(piece, {strip.x, strip.y, strip.along_x, strip.along_y});
-    if (extent.right < strip.right - kStripMargin || extent.left > strip.left + kStripMargin)
-      return kOff;
-    return std::max({0.0F, extent.begin - strip.end, strip.begin - extent.end});
+    return extent.right >= strip.right - kStripMargin && extent.left <= strip.left + kStripMargin &&
+           extent.begin <= strip.end + widest && extent.end >= strip.begin - widest;
+  }
+
+  // How far the nearest cell of another piece is from the end of one, at most about `widest`.
+  [[nodiscard]] float gap_to(const ThingPiece& piece, const ThingPiece& other, float widest) const {
+    const GridGeometry& geometry = pieces_.grid.geometry;
+    CellIndex at;
+    if (!geometry.cell_at(piece.x, piece.y, at)) return kFar;
+    const float half = 0.5F * (piece.end - piece.begin);
+    const int reach = static_cast<int>(std::lround((widest + half) / cell_));
+    int least = 2 * reach * reach + 1;
+    for_slots_around(pieces_.grid, at, reach, [&](std::size_t slot) {
+      if (pieces_.of(slot) != &other) return;
+      const CellIndex near = geometry.index_of(pieces_.grid.cell[slot]);
+      const int dl = near.l - at.l, dw = near.w - at.w;
+      least = std::min(least, dl * dl + dw * dw);
+    });
+    return std::sqrt(static_cast<float>(least)) * cell_ - half;
   }
 
   // Looks along a long thing, from its end on, for what it goes on with.
