@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "slots_around.h"
 
@@ -73,7 +72,7 @@ void link_hanging(const ThingPieces& pieces) {
   hanging.clear(geometry);
   for (const std::int32_t member : pieces.workspace.points_of) {
     const auto slot = static_cast<std::size_t>(member);
-    if (!pieces.of(slot)->hangs || !pieces.hangs(slot)) continue;
+    if (!pieces.hangs(slot) || !pieces.of(slot)->hangs) continue;
     const CellIndex at = geometry.index_of(pieces.grid.cell[slot]);
     hanging.for_marked_before(at, reach, [&](CellIndex near) {
       const Slot other = pieces.grid.slot_at(near);

@@ -24,11 +24,11 @@ constexpr float kRingGap = 2.0F;
 constexpr float kFewestCells = 2.0F;
 // What lies in the strip of a larger low thing, which is so many times as long as wide: how much of
 // the ground it may cover, square metres, by how much it may reach out of the strip to the sides,
-// and how far it may be from it, metres; farther if it is ground that is raised, as curbs are.
+// and how far it may be from it, metres; as far as rings are apart if it is raised ground.
 constexpr float kStripSlender = 2.0F;
 constexpr float kPieceArea = 1.2F;
 constexpr float kStripMargin = 0.3F;
-constexpr float kStripGap = 1.2F, kRaisedGap = 3.0F;
+constexpr float kStripGap = 1.2F;
 constexpr float kFar = 1e9F;
 
 /// A line along which two things may be one; places on it are metres from the middle of the first.
@@ -110,16 +110,20 @@ class Continuation {
 
   void link_to_strips() const {
     const std::vector<std::int32_t>& low = low_things(1.0F);
+    std::vector<std::int32_t>& strips = pieces_.workspace.steps_of;
+    strips.clear();
+    for (const std::int32_t number : low)
+      if (is_strip(pieces_.all()[static_cast<std::size_t>(number)])) strips.push_back(number);
     for (const std::int32_t number : low) {
       const ThingPiece& piece = pieces_.all()[static_cast<std::size_t>(number)];
       if (piece.n * cell_ * cell_ > kPieceArea) continue;
-      const float widest = piece.above > 0.0F ? kStripGap : kRaisedGap;
+      const float widest = piece.above > 0.0F ? kStripGap : kRingGap;
       const ThingPiece* nearest = nullptr;
       float least = widest;
-      for (const std::int32_t other : low) {
+      for (const std::int32_t other : strips) {
         const ThingPiece& strip = pieces_.all()[static_cast<std::size_t>(other)];
-        if (other == number || !is_in_strip(piece, strip, widest)) continue;
-        const float gap = gap_to(piece, strip, widest);
+        if (other == number || !is_in_strip(piece, strip, least)) continue;
+        const float gap = gap_to(piece, strip, least);
         if (gap > least) continue;
         nearest = &strip;
         least = gap;
@@ -139,20 +143,23 @@ class Continuation {
     return low;
   }
 
+  [[nodiscard]] bool is_strip(const ThingPiece& piece) const {
+    const float length = piece.end - piece.begin + cell_;
+    return length >= kLong && length >= kStripSlender * (piece.left - piece.right + cell_);
+  }
+
   // Whether a low piece lies in the strip of another one, and is lower.
   [[nodiscard]] bool is_in_strip(const ThingPiece& piece, const ThingPiece& strip,
                                  float widest) const {
-    const float length = strip.end - strip.begin + cell_;
-    if (length < kLong || length < kStripSlender * (strip.left - strip.right + cell_) ||
-        piece.n > strip.n || piece.high > strip.high + level_)
-      return false;
-    const float dx = piece.x - strip.x, dy = piece.y - strip.y;
-    const float reach = widest + length + piece.end - piece.begin;
-    if (dx * dx + dy * dy > reach * reach) return false;
+    if (piece.n > strip.n || piece.high > strip.high + level_) return false;
+    const float right = strip.right - kStripMargin, left = strip.left + kStripMargin;
+    // Its middle is in there as well, which is quicker to see.
+    const float across = strip.across_of(piece.x, piece.y);
+    if (across < right || across > left) return false;
     Extent extent;
     extent.add(piece, {strip.x, strip.y, strip.along_x, strip.along_y});
-    return extent.right >= strip.right - kStripMargin && extent.left <= strip.left + kStripMargin &&
-           extent.begin <= strip.end + widest && extent.end >= strip.begin - widest;
+    return extent.right >= right && extent.left <= left && extent.begin <= strip.end + widest &&
+           extent.end >= strip.begin - widest;
   }
 
   // How far the nearest cell of another piece is from the end of one, at most about `widest`.

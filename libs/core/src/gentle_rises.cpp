@@ -46,33 +46,36 @@ void find_gentle_rises(const ThingPieces& pieces) {
   FieldClusterWorkspace& workspace = pieces.workspace;
   const FieldCells& cells = pieces.cells;
   const std::vector<std::int32_t>& members = workspace.points_of;
+  std::vector<std::int32_t>& surplus = workspace.border_of;  // points above less raised ones
+  std::vector<float>& balance = workspace.tops;              // steps less their least share
   workspace.gentle.assign(cells.size(), 0);
-  std::vector<std::int32_t>& surplus = workspace.border_of;
-  surplus.assign(cells.size(), 0);
+  surplus.resize(cells.size());
+  balance.resize(cells.size());
   for (const std::int32_t member : members) {
     const auto slot = static_cast<std::size_t>(member);
-    const auto root = static_cast<std::size_t>(root_of(workspace.parent, member));
-    if (root == slot) workspace.gentle[root] = 1;  // the first of its cells
+    workspace.parent[slot] = root_of(workspace.parent, member);
+    const auto root = static_cast<std::size_t>(workspace.parent[slot]);
+    if (root == slot) {  // the first of its cells
+      workspace.gentle[root] = 1;
+      surplus[root] = 0;
+      balance[root] = 0.0F;
+    }
+    if (workspace.gentle[root] == 0) continue;
     surplus[root] += cells.above[slot] - cells.raised[slot];
     const float low = low_of(cells, slot), high = high_of(cells, slot);
     if (high >= kLow || high - low >= kUpright) workspace.gentle[root] = 0;
   }
-  std::vector<std::int32_t>& gentle = workspace.cells_of;
-  std::vector<std::int32_t>& steps = workspace.steps_of;
-  gentle.assign(cells.size(), 0);
-  steps.assign(cells.size(), 0);
-  for (const std::int32_t member : members) {
-    const auto root = static_cast<std::size_t>(root_of(workspace.parent, member));
-    if (workspace.gentle[root] == 0 || surplus[root] <= 0) continue;
-    const Edges edges = edges_of(pieces, static_cast<std::size_t>(member));
-    steps[root] += edges.steps;
-    gentle[root] += edges.gentle;
-  }
   const auto sharp = static_cast<float>(pieces.params.sharp);
   for (const std::int32_t member : members) {
+    const auto root = static_cast<std::size_t>(workspace.parent[static_cast<std::size_t>(member)]);
+    if (workspace.gentle[root] == 0 || surplus[root] <= 0) continue;
+    const Edges edges = edges_of(pieces, static_cast<std::size_t>(member));
+    const auto steps = static_cast<float>(edges.steps), gentle = static_cast<float>(edges.gentle);
+    balance[root] += steps - sharp * (steps + gentle);
+  }
+  for (const std::int32_t member : members) {
     const auto slot = static_cast<std::size_t>(member);
-    const auto edges = static_cast<float>(steps[slot] + gentle[slot]);
-    if (static_cast<float>(steps[slot]) >= sharp * edges) workspace.gentle[slot] = 0;
+    if (workspace.gentle[slot] != 0 && balance[slot] >= 0.0F) workspace.gentle[slot] = 0;
   }
 }
 
