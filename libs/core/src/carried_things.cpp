@@ -72,12 +72,15 @@ void link_hanging(const ThingPieces& pieces) {
   hanging.clear(geometry);
   for (const std::int32_t member : pieces.workspace.points_of) {
     const auto slot = static_cast<std::size_t>(member);
-    if (!pieces.hangs(slot) || !pieces.of(slot)->hangs) continue;
+    const ThingPiece* piece = pieces.of(slot);
+    if (!piece->hangs || !pieces.hangs(slot)) continue;
     const CellIndex at = geometry.index_of(pieces.grid.cell[slot]);
     hanging.for_marked_before(at, reach, [&](CellIndex near) {
       const Slot other = pieces.grid.slot_at(near);
-      const float high = pieces.cells.high[static_cast<std::size_t>(other)];
-      if (std::abs(high - pieces.cells.high[slot]) <= level) pieces.unite(member, other);
+      const auto beside = static_cast<std::size_t>(other);
+      if (pieces.of(beside) == piece) return;
+      if (std::abs(pieces.cells.high[beside] - pieces.cells.high[slot]) <= level)
+        pieces.unite(member, other);
     });
     hanging.mark(at);
   }
