@@ -42,6 +42,39 @@ TEST(LinkedThings, PostsBesideABoxOrOfOtherHeightsAreNoLegs) {
     EXPECT_TRUE(all_apart(table->scene.things_at(table->places)));
 }
 
+/// A row of cells of a table's top 0.8 m high, below which the ground is seen.
+void add_top(Scene& scene, double y, float high) {
+  const Rect row{2.4, 4.0, y - 0.1, y + 0.1};
+  scene.thing(row, high - 0.04F, high);
+  scene.ground(row);
+}
+
+// Its centre is a metre beside that of the row.
+std::vector<std::int32_t> far_leg(float high) {
+  Scene scene;
+  add_top(scene, 0.1, 0.8F);
+  scene.thing(at(3.1, -0.9), 0.05F, high);
+  return scene.things_at({{3.1, 0.1}, {3.1, -0.9}});
+}
+
+TEST(LinkedThings, LegsThatAreAsHighAsATableMayBeFartherFromIt) {
+  EXPECT_TRUE(all_one(far_leg(0.7F)));
+  EXPECT_TRUE(all_apart(far_leg(0.55F)));
+}
+
+std::vector<std::int32_t> two_rows(double apart, float high) {
+  Scene scene;
+  add_top(scene, 0.1, 0.8F);
+  add_top(scene, 0.1 + apart, high);
+  return scene.things_at({{3.1, 0.1}, {3.1, 0.1 + apart}});
+}
+
+TEST(LinkedThings, TwoRowsOfATopAreOneIfTheyAreAsHigh) {
+  EXPECT_TRUE(all_one(two_rows(0.6, 0.82F)));
+  EXPECT_TRUE(all_apart(two_rows(0.6, 0.9F)));
+  EXPECT_TRUE(all_apart(two_rows(0.8, 0.82F)));
+}
+
 struct Posts {
   Scene scene;
   std::vector<Position2> places;
@@ -61,18 +94,25 @@ TEST(LinkedThings, FourPostsAtTheCornersOfARectangleAreOne) {
   EXPECT_TRUE(all_one(four.scene.things_at(four.places)));
 }
 
+TEST(LinkedThings, ThreeCornersOfARectangleWillDo) {
+  Posts three;
+  three.add(2.1, 2.1, 0.7F);
+  three.add(3.3, 2.1, 0.75F);
+  three.add(2.1, 2.9, 0.7F);
+  EXPECT_TRUE(all_one(three.scene.things_at(three.places)));
+}
+
 TEST(LinkedThings, PostsThatAreNoRectangleOrNotAsHighStayApart) {
-  Posts three, lower, skew, wide;
-  for (Posts* posts : {&three, &lower, &skew}) {
+  Posts two, lower, skew, wide;
+  for (Posts* posts : {&two, &lower, &skew}) {
     posts->add(2.1, 2.1, 0.7F);
     posts->add(3.3, 2.1, 0.7F);
-    posts->add(2.1, 2.9, 0.7F);
   }
-  lower.add(3.3, 2.9, 0.5F);
-  skew.add(3.9, 2.9, 0.7F);
+  lower.add(2.1, 2.9, 0.5F);
+  skew.add(2.9, 2.9, 0.7F);
   for (const double x : {2.1, 5.1})
     for (const double y : {2.1, 2.9}) wide.add(x, y, 0.7F);
-  for (const Posts* posts : {&three, &lower, &skew, &wide})
+  for (const Posts* posts : {&two, &lower, &skew, &wide})
     EXPECT_TRUE(all_apart(posts->scene.things_at(posts->places)));
 }
 
@@ -143,6 +183,25 @@ TEST(LinkedThings, ACurbGoesOnBetweenTwoRings) {
   EXPECT_TRUE(all_apart(Curb(7.0).things())) << "too far";
 }
 
+/// A curb 0.12 m high along x at y = 2, and something small at x, y beside its end at x = 6. The
+/// ground is seen between.
+std::vector<std::int32_t> beside_curb(double x, double y, float high) {
+  Scene scene;
+  const Rect curb{3.0, 6.0, 2.0, 2.4};
+  scene.thing(curb, 0.05F, 0.12F);
+  scene.sharp(curb);
+  scene.ground({6.0, 6.4, 2.0, 2.4});
+  scene.thing({x - 0.2, x + 0.2, y - 0.1, y + 0.1}, 0.05F, high);
+  return scene.things_at({{5.1, 2.1}, {x, y}}, &kSensor);
+}
+
+TEST(LinkedThings, WhatLiesInTheStripOfACurbIsAPieceOfIt) {
+  EXPECT_TRUE(all_one(beside_curb(6.8, 2.3, 0.15F)));
+  EXPECT_TRUE(all_apart(beside_curb(6.8, 2.3, 0.2F))) << "higher";
+  EXPECT_TRUE(all_apart(beside_curb(6.8, 2.9, 0.15F))) << "beside";
+  EXPECT_TRUE(all_apart(beside_curb(7.6, 2.3, 0.15F))) << "too far";
+}
+
 /// Two walls along x, `apart` metres from each other; the second begins at `begin`.
 struct Abutments {
   Scene scene;
@@ -192,6 +251,22 @@ TEST(LinkedThings, WhatIsNoHigherThanTheGroundAroundIsNone) {
   EXPECT_NE(half.things_at(place).front(), kNoCluster);
   scene.level(whole);
   EXPECT_EQ(scene.things_at(place).front(), kNoCluster);
+}
+
+/// What rises to `high` in the middle of a rectangle, with ground at some height beside it.
+std::int32_t rise(float high, float ground, float extent = 0.05F) {
+  Scene scene;
+  scene.ground({2.8, 4.2, 0.8, 2.2}, ground);
+  scene.thing({3.0, 4.0, 1.0, 2.0}, 0.1F, 0.1F + extent);
+  scene.thing({3.4, 3.6, 1.4, 1.6}, high - extent, high);
+  return scene.things_at({{3.5, 1.5}}).front();
+}
+
+TEST(LinkedThings, WhatTheGroundRisesToWithoutAStepIsNone) {
+  EXPECT_EQ(rise(0.3F, 0.08F), kNoCluster);
+  EXPECT_NE(rise(0.3F, 0.02F), kNoCluster) << "a step down to the ground";
+  EXPECT_NE(rise(0.5F, 0.08F), kNoCluster) << "high";
+  EXPECT_NE(rise(0.3F, 0.08F, 0.12F), kNoCluster) << "upright";
 }
 
 }  // namespace

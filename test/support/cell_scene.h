@@ -15,9 +15,12 @@ namespace mrpt_terrain::worlds {
 /// What is seen in cells of 0.2 m on 20 m x 20 m, on level ground at z = 0.
 class CellScene {
  public:
-  /// Ground is seen in a rectangle.
-  void ground(const Rect& rect) {
-    for_cells(rect, [](Cell& cell) { cell.on = 1; });
+  /// Ground is seen in a rectangle, so high.
+  void ground(const Rect& rect, float height = 0.0F) {
+    for_cells(rect, [&](Cell& cell) {
+      cell.on = 1;
+      cell.floor = height;
+    });
   }
   /// Points from `low` to `high` above the ground are seen in a rectangle.
   void thing(const Rect& rect, float low, float high) {
@@ -58,7 +61,7 @@ class CellScene {
  private:
   struct Cell {
     std::int32_t on = 0, above = 0;
-    float low = 0.0F, high = 0.0F;
+    float low = 0.0F, high = 0.0F, floor = 0.0F;
     std::uint8_t level = 0;
     std::int8_t sharp = 0;
   };
@@ -100,13 +103,13 @@ class CellScene {
         field.above.push_back(cell.above);
         field.low.push_back(cell.low);
         field.high.push_back(cell.high);
+        field.floor.push_back(cell.floor);
         field.level.push_back(cell.level);
         field.sharp_edges.push_back(cell.sharp);
       }
     }
     const std::size_t n = result.grid.observed();
-    for (auto* values :
-         {&field.ground, &field.floor, &field.rim, &field.raised_low, &field.raised_high})
+    for (auto* values : {&field.ground, &field.rim, &field.raised_low, &field.raised_high})
       values->assign(n, 0.0F);
     for (auto* counts : {&field.below, &field.raised}) counts->assign(n, 0);
     field.smooth_edges.assign(n, 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "carried_things.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "slots_around.h"
@@ -9,12 +10,14 @@ namespace mrpt_terrain {
 namespace {
 
 // Legs are at most so wide (centres of cells), at most so high, and at most so far from what is
-// seen of that which they carry, metres.
+// seen of that which they carry, metres; those that are nearly as high may be farther away.
 constexpr float kLegWidth = 0.3F;
 constexpr float kLegHeight = 1.5F;
-constexpr double kLegReach = 0.8;
-// Four legs: sides of their rectangle, by how much their heights may differ, by how much the
-// fourth may be off, metres; cosine of the angle between two sides.
+constexpr double kLegReach = 0.8, kHighLegReach = 1.0;
+// Parts of what hangs, seen by a ring here and one there, are at most so far apart, metres.
+constexpr double kHangingGap = 0.6;
+// Three or four legs: sides of their rectangle, by how much their heights may differ, by how much
+// the fourth may be off, metres; cosine of the angle between two sides.
 constexpr float kShortSide = 0.4F, kLongSide = 2.0F;
 constexpr float kAsHigh = 0.15F;
 constexpr float kCorner = 0.25F;
@@ -35,17 +38,53 @@ bool is_post(const ThingPiece& piece, const FieldClusterParams& params) {
          piece.high - piece.low > static_cast<float>(params.flat);
 }
 
+int cells_within(const GridGeometry& geometry, double distance) {
+  return static_cast<int>(std::lround(distance / geometry.cell_size()));
+}
+
 void link_to_hanging(const ThingPieces& pieces, const ThingPiece& leg) {
-  const int reach = static_cast<int>(std::lround(kLegReach / pieces.grid.geometry.cell_size()));
+  const GridGeometry& geometry = pieces.grid.geometry;
+  const int near = cells_within(geometry, kLegReach);
   const auto level = static_cast<float>(pieces.params.level);
   const auto step = static_cast<float>(pieces.params.step);
-  for_slots_around(pieces.grid, static_cast<std::size_t>(leg.slot), reach, [&](std::size_t other) {
-    const ThingPiece* carried = pieces.of(other);
-    if (carried == nullptr || carried == &leg || !carried->hangs || !pieces.hangs(other)) return;
-    if (leg.high > pieces.cells.high[other] + level || leg.high < pieces.cells.low[other] - step)
-      return;
-    pieces.unite(leg.slot, carried->slot);
-  });
+  const auto flat = static_cast<float>(pieces.params.flat);
+  const auto foot = static_cast<std::size_t>(leg.slot);
+  const CellIndex at = geometry.index_of(pieces.grid.cell[foot]);
+  for_slots_around(
+      pieces.grid, foot, cells_within(geometry, kHighLegReach), [&](std::size_t other) {
+        const ThingPiece* carried = pieces.of(other);
+        if (carried == nullptr || carried == &leg || !carried->hangs || !pieces.hangs(other))
+          return;
+        if (leg.high > pieces.cells.high[other] + level ||
+            leg.high < pieces.cells.low[other] - step)
+          return;
+        const CellIndex top = geometry.index_of(pieces.grid.cell[other]);
+        const int apart = std::max(std::abs(top.l - at.l), std::abs(top.w - at.w));
+        if (apart > near && carried->high > leg.high + flat) return;
+        pieces.unite(leg.slot, carried->slot);
+      });
+}
+
+void link_hanging(const ThingPieces& pieces) {
+  const GridGeometry& geometry = pieces.grid.geometry;
+  const auto level = static_cast<float>(pieces.params.level);
+  const int reach = cells_within(geometry, kHangingGap);
+  CellBits& hanging = pieces.workspace.raised;
+  hanging.clear(geometry);
+  for (const std::int32_t member : pieces.workspace.points_of) {
+    const auto slot = static_cast<std::size_t>(member);
+    const ThingPiece* piece = pieces.of(slot);
+    if (!piece->hangs || !pieces.hangs(slot)) continue;
+    const CellIndex at = geometry.index_of(pieces.grid.cell[slot]);
+    hanging.for_marked_before(at, reach, [&](CellIndex near) {
+      const Slot other = pieces.grid.slot_at(near);
+      const auto beside = static_cast<std::size_t>(other);
+      if (pieces.of(beside) == piece) return;
+      if (std::abs(pieces.cells.high[beside] - pieces.cells.high[slot]) <= level)
+        pieces.unite(member, other);
+    });
+    hanging.mark(at);
+  }
 }
 
 bool is_side(const ThingPiece& a, const ThingPiece& b) {
@@ -80,6 +119,9 @@ void link_rectangles(const ThingPieces& pieces) {
       for (std::size_t k = i + 1; k < posts.size(); ++k) {
         const ThingPiece& b = piece(posts[k]);
         if (!is_side(c, b) || !is_right_angle(c, a, b)) continue;
+        // The fourth leg may be hidden.
+        if (std::abs(a.high - b.high) <= kAsHigh)
+          for (const ThingPiece* leg : {&a, &b}) pieces.unite(c.slot, leg->slot);
         for (const std::int32_t opposite : posts) {
           const ThingPiece& d = piece(opposite);
           if (opposite == corner || !is_opposite(c, a, b, d)) continue;
@@ -141,6 +183,7 @@ void link_carried_things(const ThingPieces& pieces) {
     if (is_post(pieces.all()[k], pieces.params)) posts.push_back(static_cast<std::int32_t>(k));
   for (const std::int32_t post : posts)
     link_to_hanging(pieces, pieces.all()[static_cast<std::size_t>(post)]);
+  link_hanging(pieces);
   link_rectangles(pieces);
   link_abutments(pieces);
 }

@@ -22,6 +22,14 @@ constexpr float kTopShare = 0.3F;
 constexpr float kLow = 0.3F, kLowWidth = 0.8F;
 constexpr float kRingGap = 2.0F;
 constexpr float kFewestCells = 2.0F;
+// What lies in the strip of a larger low thing, which is so many times as long as wide: how much of
+// the ground it may cover, square metres, by how much it may reach out of the strip to the sides,
+// and how far it may be from it, metres; as far as rings are apart if it is raised ground.
+constexpr float kStripSlender = 2.0F;
+constexpr float kPieceArea = 1.2F;
+constexpr float kStripMargin = 0.3F;
+constexpr float kStripGap = 1.2F;
+constexpr float kFar = 1e9F;
 
 /// A line along which two things may be one; places on it are metres from the middle of the first.
 struct Line {
@@ -86,12 +94,8 @@ class Continuation {
   }
 
   void link_low_things() const {
-    std::vector<std::int32_t>& low = pieces_.workspace.posts;
-    low.clear();
+    const std::vector<std::int32_t>& low = low_things(kFewestCells);
     const std::vector<ThingPiece>& all = pieces_.all();
-    for (std::size_t k = 0; k < all.size(); ++k)
-      if (all[k].high <= kLow && all[k].n >= kFewestCells)
-        low.push_back(static_cast<std::int32_t>(k));
     for (std::size_t b = 1; b < low.size(); ++b) {
       const ThingPiece& q = all[static_cast<std::size_t>(low[b])];
       for (std::size_t a = 0; a < b; ++a) {
@@ -104,7 +108,77 @@ class Continuation {
     }
   }
 
+  void link_to_strips() const {
+    const std::vector<std::int32_t>& low = low_things(1.0F);
+    std::vector<std::int32_t>& strips = pieces_.workspace.steps_of;
+    strips.clear();
+    for (const std::int32_t number : low)
+      if (is_strip(pieces_.all()[static_cast<std::size_t>(number)])) strips.push_back(number);
+    for (const std::int32_t number : low) {
+      const ThingPiece& piece = pieces_.all()[static_cast<std::size_t>(number)];
+      if (piece.n * cell_ * cell_ > kPieceArea) continue;
+      const float widest = piece.above > 0.0F ? kStripGap : kRingGap;
+      const ThingPiece* nearest = nullptr;
+      float least = widest;
+      for (const std::int32_t other : strips) {
+        const ThingPiece& strip = pieces_.all()[static_cast<std::size_t>(other)];
+        if (other == number || !is_in_strip(piece, strip, least)) continue;
+        const float gap = gap_to(piece, strip, least);
+        if (gap > least) continue;
+        nearest = &strip;
+        least = gap;
+      }
+      if (nearest != nullptr) pieces_.unite(piece.slot, nearest->slot);
+    }
+  }
+
  private:
+  // Numbers of the low pieces of so many cells.
+  [[nodiscard]] const std::vector<std::int32_t>& low_things(float fewest) const {
+    std::vector<std::int32_t>& low = pieces_.workspace.posts;
+    low.clear();
+    const std::vector<ThingPiece>& all = pieces_.all();
+    for (std::size_t k = 0; k < all.size(); ++k)
+      if (all[k].high <= kLow && all[k].n >= fewest) low.push_back(static_cast<std::int32_t>(k));
+    return low;
+  }
+
+  [[nodiscard]] bool is_strip(const ThingPiece& piece) const {
+    const float length = piece.end - piece.begin + cell_;
+    return length >= kLong && length >= kStripSlender * (piece.left - piece.right + cell_);
+  }
+
+  // Whether a low piece lies in the strip of another one, and is lower.
+  [[nodiscard]] bool is_in_strip(const ThingPiece& piece, const ThingPiece& strip,
+                                 float widest) const {
+    if (piece.n > strip.n || piece.high > strip.high + level_) return false;
+    const float right = strip.right - kStripMargin, left = strip.left + kStripMargin;
+    // Its middle is in there as well, which is quicker to see.
+    const float across = strip.across_of(piece.x, piece.y);
+    if (across < right || across > left) return false;
+    Extent extent;
+    extent.add(piece, {strip.x, strip.y, strip.along_x, strip.along_y});
+    return extent.right >= right && extent.left <= left && extent.begin <= strip.end + widest &&
+           extent.end >= strip.begin - widest;
+  }
+
+  // How far the nearest cell of another piece is from the end of one, at most about `widest`.
+  [[nodiscard]] float gap_to(const ThingPiece& piece, const ThingPiece& other, float widest) const {
+    const GridGeometry& geometry = pieces_.grid.geometry;
+    CellIndex at;
+    if (!geometry.cell_at(piece.x, piece.y, at)) return kFar;
+    const float half = 0.5F * (piece.end - piece.begin);
+    const int reach = static_cast<int>(std::lround((widest + half) / cell_));
+    int least = 2 * reach * reach + 1;
+    for_slots_around(pieces_.grid, at, reach, [&](std::size_t slot) {
+      if (pieces_.of(slot) != &other) return;
+      const CellIndex near = geometry.index_of(pieces_.grid.cell[slot]);
+      const int dl = near.l - at.l, dw = near.w - at.w;
+      least = std::min(least, dl * dl + dw * dw);
+    });
+    return std::sqrt(static_cast<float>(least)) * cell_ - half;
+  }
+
   // Looks along a long thing, from its end on, for what it goes on with.
   void follow(const ThingPiece& piece, const Line& line, float end) const {
     const float length = piece.end - piece.begin + cell_;
@@ -188,6 +262,7 @@ void link_continued_things(const ThingPieces& pieces, const PassedBeams& beams) 
   const Continuation continuation(pieces, beams);
   continuation.link_long_things();
   continuation.link_low_things();
+  continuation.link_to_strips();
 }
 
 }  // namespace mrpt_terrain

@@ -8,6 +8,7 @@
 #include "carried_things.h"
 #include "continued_things.h"
 #include "crossing_strips.h"
+#include "gentle_rises.h"
 #include "length_of.h"
 #include "loose_things.h"
 #include "standing_things.h"
@@ -173,7 +174,9 @@ void number_things(const FieldClusterParams& params, FieldClusterWorkspace& work
     const bool swell = is_swell(workspace.above_of[root], workspace.points_of[root],
                                 workspace.sharp_of[root], edges, params);
     const bool level = workspace.stands[root] == 0;
-    if (level || swell || (cells < params.t_c && workspace.points_of[root] < params.t_points)) {
+    const bool gentle = workspace.gentle[root] != 0;
+    if (level || swell || gentle ||
+        (cells < params.t_c && workspace.points_of[root] < params.t_points)) {
       ++result.dropped;
       continue;
     }
@@ -220,6 +223,7 @@ void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& gr
   link_carried_things(pieces);
   link_loose_things(pieces);
   if (beams) link_continued_things(pieces, *beams);
+  find_gentle_rises(pieces);
   count_members(linker, workspace);
   number_things(params, workspace, result);
   result.cluster_of.assign(n, kNoCluster);

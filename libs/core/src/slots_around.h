@@ -14,10 +14,9 @@ namespace mrpt_terrain {
   return grid.geometry.cell_at(at.x, at.y, cell) ? grid.slot_at(cell) : kUnobserved;
 }
 
-/// Calls f with every observed slot up to `reach` cells away from a slot, itself included.
+/// Calls f with every observed slot up to `reach` cells away from a cell, its own included.
 template <class F>
-void for_slots_around(const ElevationGrid& grid, std::size_t slot, int reach, F&& f) {
-  const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
+void for_slots_around(const ElevationGrid& grid, CellIndex at, int reach, F&& f) {
   for (int l = std::max(at.l - reach, 0); l <= std::min(at.l + reach, grid.geometry.cells_l() - 1);
        ++l) {
     for (int w = std::max(at.w - reach, 0);
@@ -27,6 +26,12 @@ void for_slots_around(const ElevationGrid& grid, std::size_t slot, int reach, F&
       if (other != kUnobserved) f(static_cast<std::size_t>(other));
     }
   }
+}
+
+/// The same around a slot.
+template <class F>
+void for_slots_around(const ElevationGrid& grid, std::size_t slot, int reach, F&& f) {
+  for_slots_around(grid, grid.geometry.index_of(grid.cell[slot]), reach, f);
 }
 
 }  // namespace mrpt_terrain

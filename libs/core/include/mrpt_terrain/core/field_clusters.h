@@ -105,6 +105,7 @@ struct FieldClusterWorkspace {
   std::vector<std::int32_t> number_of;
   std::vector<std::int32_t> sharp_of, smooth_of, above_of;
   std::vector<std::uint8_t> stands;  ///< per slot: 1 if a cell of the thing is not level
+  std::vector<std::uint8_t> gentle;  ///< per slot: 1 if the thing is a rise of the ground
   std::vector<ThingPiece> pieces;
   std::vector<std::int32_t> posts;                ///< numbers of pieces
   IndexRows piece_cells;                          ///< per piece: its slots, ascending
