@@ -395,10 +395,12 @@ TEST(FieldCosts, OracleObstaclesPointByPoint) {
     Cell& cell = cells[static_cast<std::size_t>(slot)];
     const double z = double{world.points.z[i]};
     const double height = double{world.workspace.field.points.height[i]};
-    if (description.labels.support[i] == Support::kGround) {
+    // By heights: a side onto which the reference climbed is above the ground in labels alone.
+    const Support support = world.workspace.field.points.support[i];
+    if (support == Support::kGround) {
       cell.foot += z;
       cell.n += 1.0;
-    } else if (description.labels.support[i] == Support::kAbove && height < clear) {
+    } else if (support == Support::kAbove && height < clear) {
       cell.highest = std::max(cell.highest, height);
       cell.top = std::max(cell.top, z);
     } else {
