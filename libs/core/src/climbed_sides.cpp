@@ -17,17 +17,31 @@ constexpr float kLeastRise = 0.03F, kLeastHeight = 0.05F;
 // Lines are sought in blocks of cells of this level, 6.4 m.
 constexpr int kBlockLevel = 4;
 
-/// Calls `visit` with the points of the ground that may be of such a side.
-template <class Visitor>
-void for_candidates(const FieldWorkspace& field, Visitor&& visit) {
-  const GroundSurface& surface = field.surface;
-  const LevelView base = view_of_level(field.surface_workspace, surface.lattice(), kBaseLevel);
+// Lists the cells on which the reference stands out of its coarser level.
+void find_risen_cells(const GroundSurface& surface, const LevelView& base,
+                      std::vector<LevelStep>& step, std::vector<std::int32_t>& risen) {
   const CellPoints& cells = surface.cells;
-  const std::int32_t blocks = surface.lattice().side >> kBlockLevel;
+  find_steps(base, cells.lattice, kBaseLevel, step);
+  risen.clear();
   for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
     const LatticeCell cell = cells.cell[slot];
-    const float rise = surface.node[cells.number_of(cell)] - base.at_cell(cell, kBaseLevel).height;
-    if (rise < kLeastRise) continue;
+    const auto row = static_cast<std::size_t>(cell.row);
+    const auto column = static_cast<std::size_t>(cell.column);
+    const float coarse = base.between(step[row], step[column]).height;
+    if (surface.node[cells.number_of(cell)] - coarse >= kLeastRise)
+      risen.push_back(static_cast<std::int32_t>(slot));
+  }
+}
+
+/// Calls `visit` with the points of the ground that may be of such a side.
+template <class Visitor>
+void for_candidates(const FieldWorkspace& field, const LevelView& base,
+                    const std::vector<std::int32_t>& risen, Visitor&& visit) {
+  const CellPoints& cells = field.surface.cells;
+  const std::int32_t blocks = cells.lattice.side >> kBlockLevel;
+  for (const std::int32_t item : risen) {
+    const auto slot = static_cast<std::size_t>(item);
+    const LatticeCell cell = cells.cell[slot];
     const std::int32_t block = (cell.row >> kBlockLevel) * blocks + (cell.column >> kBlockLevel);
     for (auto k = static_cast<std::size_t>(cells.first[slot]);
          k < static_cast<std::size_t>(cells.first[slot + 1]); ++k) {
@@ -40,16 +54,20 @@ void for_candidates(const FieldWorkspace& field, Visitor&& visit) {
 
 }  // namespace
 
-void label_climbed_sides(const FieldWorkspace& field, float reach, DeckWorkspace& workspace,
+void label_climbed_sides(FieldWorkspace& field, float reach, DeckWorkspace& workspace,
                          std::vector<Support>& support) {
+  const GroundSurface& surface = field.surface;
+  const LevelView base = view_of_level(field.surface_workspace, surface.lattice(), kBaseLevel);
+  std::vector<std::int32_t>& risen = workspace.members;
+  find_risen_cells(surface, base, field.surface_workspace.step, risen);
   workspace.surface_points.clear();
   workspace.sides.clear();
-  for_candidates(field, [&workspace](const DeckSidePoint& point) {
+  for_candidates(field, base, risen, [&workspace](const DeckSidePoint& point) {
     workspace.surface_points.push_back(point);
   });
   find_side_rings(reach, workspace.surface_points, workspace.sides);
   if (workspace.sides.empty()) return;
-  for_candidates(field, [&](const DeckSidePoint& point) {
+  for_candidates(field, base, risen, [&](const DeckSidePoint& point) {
     if (is_on_side(workspace.sides, point.deck, point.x, point.y, reach))
       support[static_cast<std::size_t>(point.point)] = Support::kAbove;
   });

@@ -18,8 +18,9 @@ void find_deck_sides(float reach, std::vector<DeckSidePoint>& points, std::vecto
 
 /// Finds sides that one ring alone meets near their edge, so that it was taken for the surface.
 /// From above such a ring is straight, while its height falls to both ends, as its beams go down
-/// with distance; on a surface that a wheel can stand on it would bend, too. \param reach metres:
-/// how far points may be off their line \param[in,out] points on the surfaces of decks; used up
+/// with distance; on a surface that a wheel can stand on it would bend, too.
+/// \param reach metres: how far points may be off their line
+/// \param[in,out] points on the surfaces of decks; used up
 /// \param[in,out] sides sorted by deck; those that are found are added
 void find_side_rings(float reach, std::vector<DeckSidePoint>& points, std::vector<DeckSide>& sides);
 
