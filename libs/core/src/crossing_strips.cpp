@@ -51,7 +51,7 @@ struct Directions {
   std::array<float, kDirections> x, y;
   Directions() {
     for (std::size_t k = 0; k < x.size(); ++k) {
-      const double angle = 3.14159265358979323846 * static_cast<double>(k) / kDirections;
+      const double angle = M_PI * static_cast<double>(k) / kDirections;
       x[k] = static_cast<float>(std::cos(angle));
       y[k] = static_cast<float>(std::sin(angle));
     }

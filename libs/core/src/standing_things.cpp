@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "slots_around.h"
+
 namespace mrpt_terrain {
 namespace {
 
@@ -56,14 +58,10 @@ class StandingDivider {
     const auto number_of = [this](std::int32_t s) {
       return pieces_.workspace.number_of[static_cast<std::size_t>(s)];
     };
-    const CellIndex at =
-        pieces_.grid.geometry.index_of(pieces_.grid.cell[static_cast<std::size_t>(slot)]);
-    for (int l = -1; l <= 1; ++l) {
-      for (int w = -1; w <= 1; ++w) {
-        const Slot other = pieces_.grid.slot_at({at.l + l, at.w + w});
-        if (other != kUnobserved && other != slot && number_of(other) == number_of(slot)) f(other);
-      }
-    }
+    for_slots_around(pieces_.grid, static_cast<std::size_t>(slot), 1, [&](std::size_t near) {
+      const auto other = static_cast<std::int32_t>(near);
+      if (other != slot && number_of(other) == number_of(slot)) f(other);
+    });
   }
 
   // The median of the low cells and the height from which on a cell stands out; false: none does,

@@ -81,9 +81,9 @@ struct DeckLayer {
   }
 };
 
-/// A point of the side of a deck, seen from above, metres.
+/// A point that is, or may be, of the side of a deck, metres.
 struct DeckSidePoint {
-  std::int32_t deck = -1;
+  std::int32_t deck = -1;   ///< or a part of the ground, where sides are looked for in that
   std::int32_t point = -1;  ///< its number in the scan
   float x = 0.0F, y = 0.0F, z = 0.0F;
 };
@@ -103,7 +103,7 @@ struct DeckSide {
   }
 };
 
-/// Scratch memory of `find_decks`.
+/// Scratch memory of `find_decks` and of the labels of sides.
 struct DeckWorkspace {
   CellBits candidate_cells;             ///< the cells of those slots that are `candidate`
   CellBits member_cells;                ///< the cells of `members`, while they are looked at
@@ -121,7 +121,7 @@ struct DeckWorkspace {
   std::vector<std::int32_t> on_deck;    ///< points on a deck or near its edge
   std::vector<std::int32_t> low_side;   ///< points below a deck's surface that are ground so far
   std::vector<std::int32_t> deck_cell;  ///< per slot: itself or the cell of a deck beside, or -1
-  std::vector<DeckSidePoint> side_points, surface_points;
+  std::vector<DeckSidePoint> side_points, surface_points;  ///< below a surface, and on one
   std::vector<DeckSide> sides;
 };
 
