@@ -52,9 +52,14 @@ struct SurfaceFit {
   float slope;  // gradient of their heights above the ground
 };
 
+int divide_rounded(int a, int b) {
+  return static_cast<int>(std::lround(static_cast<double>(a) / b));
+}
+
 /// The search for one deck.
 struct DeckSearch {
   const ElevationGrid& grid;
+  const GroundSegmentation& ground;
   const FieldCells& cells;
   const DeckParams& params;
   DeckWorkspace& workspace;
@@ -64,6 +69,19 @@ struct DeckSearch {
   [[nodiscard]] bool connected(std::size_t a, std::size_t b) const {
     const float distance = length_of(top(a).x - top(b).x, top(a).y - top(b).y);
     return std::abs(top(a).above - top(b).above) <= kSlack + rise * distance;
+  }
+  /// Whether ground alone is seen in one of the cells between two.
+  [[nodiscard]] bool divided(CellIndex a, CellIndex b) const {
+    const int steps = std::max(std::abs(b.l - a.l), std::abs(b.w - a.w));
+    for (int k = 1; k < steps; ++k) {
+      const CellIndex between{a.l + divide_rounded(k * (b.l - a.l), steps),
+                              a.w + divide_rounded(k * (b.w - a.w), steps)};
+      const Slot slot = grid.slot_at(between);
+      if (slot != kUnobserved &&
+          ground.rule[static_cast<std::size_t>(slot)] == GroundRule::kGround)
+        return true;
+    }
+    return false;
   }
   /// Calls `visit` with every observed cell up to `reach` cells away along each axis, and itself.
   template <class Visitor>
@@ -134,7 +152,7 @@ void collect_members(const DeckSearch& search, std::size_t first) {
     const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
     workspace.candidate_cells.for_marked_around(at, kReach, [&](CellIndex cell) {
       const auto other = static_cast<std::size_t>(grid.slot_at(cell));
-      if (search.connected(slot, other)) take(cell, other);
+      if (search.connected(slot, other) && !search.divided(at, cell)) take(cell, other);
     });
   }
 }
@@ -385,7 +403,7 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
   cells.deck_plane.resize(n);
   choose_candidates(grid, ground, params, cells, workspace);
   measure_layers(scan.points, points, point_slots, cells, workspace);
-  const DeckSearch search{grid, cells, params, workspace,
+  const DeckSearch search{grid, ground, cells, params, workspace,
                           static_cast<float>(std::tan(params.max_slope))};
   std::int32_t found = 0;
   for (std::size_t slot = 0; slot < n; ++slot) {
