@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -20,6 +21,8 @@ namespace {
 using Surface = std::function<double(double x, double y)>;
 
 constexpr double kNoSurface = -1.0;
+/// Where no beam comes down.
+constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSensorX = -5.0, kSensorZ = 1.0;
 
 /// Points every 5 cm, seen from (-5, 0, 1): the ground, or the surface where it is higher than
@@ -39,7 +42,8 @@ struct World {
     for (int i = -120; i < 120; ++i) {
       for (int j = -120; j < 120; ++j) {
         const double x = 0.05 * i + 0.025, y = 0.05 * j + 0.025;
-        add(x, y, std::max(surface(x, y), 0.0), noise * normal(random));
+        const double height = surface(x, y);
+        if (!std::isnan(height)) add(x, y, std::max(height, 0.0), noise * normal(random));
       }
     }
     measure();
@@ -170,6 +174,39 @@ TEST(Decks, LowAndLongIsACurbShortIsAThing) {
   EXPECT_EQ(curb.find(), 1U);
   EXPECT_EQ(box.find(), 0U);
   EXPECT_EQ(high.find(), 0U);
+}
+
+TEST(Decks, ABoxBesideACurbBehindGroundIsNoPartOfIt) {
+  const auto curb_and_box = [](double ground_between) {
+    return [=](double x, double y) {
+      if (inside(x, y, 4.0, 0.8)) return 0.15;
+      if (inside(x, y - 0.9, 0.6, 0.6)) return 0.17;
+      return inside(x, y - 0.5, 0.6, 0.2) ? ground_between : kNoSurface;
+    };
+  };
+  const auto box_is_deck = [](World& world) {
+    EXPECT_EQ(world.find(), 1U);
+    CellIndex cell;
+    EXPECT_TRUE(world.grid.geometry.cell_at(0.1, 0.9, cell));
+    return world.cells.deck[static_cast<std::size_t>(world.grid.slot_at(cell))] >= 0;
+  };
+  World seen(curb_and_box(0.0)), unseen(curb_and_box(kUnseen));
+  EXPECT_FALSE(box_is_deck(seen));
+  EXPECT_TRUE(box_is_deck(unseen));
+}
+
+// What sparse rings leave of stairs is even around every cell, but nowhere over a metre.
+TEST(Decks, SlopesThatBendEverywhereAreNoRamps) {
+  const auto bent = [](double curvature) {
+    return [=](double x, double y) {
+      return inside(x, y, 2.4, 2.0) ? 0.02 + 0.1 * (x + 1.2) + curvature / 2.0 * x * x : kNoSurface;
+    };
+  };
+  World even(bent(0.05)), uneven(bent(0.6));
+  // From above, range noise would scatter the points as much.
+  even.sensor = uneven.sensor = {0.0F, 0.0F, 5.0F};
+  EXPECT_EQ(even.find(), 1U);
+  EXPECT_EQ(uneven.find(), 0U);
 }
 
 TEST(Decks, LargeIsATerrace) {

@@ -29,6 +29,12 @@ constexpr float kHold = 0.002F;
 // Points of the side of a slope are this many times as far below its surface: where it bends, its
 // own points are below the plane.
 constexpr float kSlopeSide = 4.0F;
+// Planes over stairs that are three cells wide are off their steps, even where every ring near one
+// cell meets a step of its own; at the ends of a ramp they are uneven, too, but not everywhere: a
+// share of the cells is even, if not as even as by the planes around each.
+constexpr int kWideReach = 3;
+constexpr float kEvenShare = 0.3F;
+constexpr float kWideUnevenness = 2.0F;
 // Fewest cells with a plane that tell how even a deck is.
 constexpr std::size_t kFewestPlanes = 3;
 // A ramp rises by more than this over the ground, m/m.
@@ -52,10 +58,6 @@ struct SurfaceFit {
   float slope;  // gradient of their heights above the ground
 };
 
-int divide_rounded(int a, int b) {
-  return static_cast<int>(std::lround(static_cast<double>(a) / b));
-}
-
 /// The search for one deck.
 struct DeckSearch {
   const ElevationGrid& grid;
@@ -72,13 +74,14 @@ struct DeckSearch {
   }
   /// Whether ground alone is seen in one of the cells between two.
   [[nodiscard]] bool divided(CellIndex a, CellIndex b) const {
-    const int steps = std::max(std::abs(b.l - a.l), std::abs(b.w - a.w));
+    const int l = b.l - a.l, w = b.w - a.w, steps = std::max(std::abs(l), std::abs(w));
+    const auto part = [steps](int k, int length) {
+      return static_cast<int>(
+          std::lround(static_cast<float>(k * length) / static_cast<float>(steps)));
+    };
     for (int k = 1; k < steps; ++k) {
-      const CellIndex between{a.l + divide_rounded(k * (b.l - a.l), steps),
-                              a.w + divide_rounded(k * (b.w - a.w), steps)};
-      const Slot slot = grid.slot_at(between);
-      if (slot != kUnobserved &&
-          ground.rule[static_cast<std::size_t>(slot)] == GroundRule::kGround)
+      const Slot slot = grid.slot_at({a.l + part(k, l), a.w + part(k, w)});
+      if (slot != kUnobserved && ground.rule[static_cast<std::size_t>(slot)] == GroundRule::kGround)
         return true;
     }
     return false;
@@ -198,11 +201,15 @@ bool fit_surface(const DeckSearch& search, const std::vector<DeckLayer>& layers,
   return found;
 }
 
-float median_of(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+// The value that a share of others is less than.
+float quantile_of(std::vector<float>& values, float share) {
+  const float place = share * static_cast<float>(values.size());
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(place);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
 }
+
+float median_of(std::vector<float>& values) { return quantile_of(values, 0.5F); }
 
 // Fits the planes at the cells of a deck.
 // \param[out] fit medians over them
@@ -263,6 +270,24 @@ bool is_even(const DeckSearch& search, DeckKind kind) {
     if (!fit_surfaces(search, by_tops ? workspace.top : workspace.all, fit)) continue;
     if (kind == DeckKind::kRamp && fit.slope < kLeastSlope) continue;
     if (fit.bend <= static_cast<float>(search.params.unevenness)) return true;
+  }
+  return false;
+}
+
+// Whether a part of a deck is even over more than the next cells, as no part of stairs is.
+bool has_wide_part(const DeckSearch& search) {
+  DeckWorkspace& workspace = search.workspace;
+  for (const auto* layers : {&workspace.all, &workspace.top}) {
+    workspace.bends.clear();
+    for (const std::int32_t member : workspace.members) {
+      DeckPlane plane;
+      SurfaceFit here{};
+      if (fit_surface(search, *layers, static_cast<std::size_t>(member), kWideReach, plane, here))
+        workspace.bends.push_back(here.bend);
+    }
+    if (workspace.bends.empty()) continue;
+    const auto limit = kWideUnevenness * static_cast<float>(search.params.unevenness);
+    if (quantile_of(workspace.bends, kEvenShare) <= limit) return true;
   }
   return false;
 }
@@ -403,8 +428,8 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
   cells.deck_plane.resize(n);
   choose_candidates(grid, ground, params, cells, workspace);
   measure_layers(scan.points, points, point_slots, cells, workspace);
-  const DeckSearch search{grid, ground, cells, params, workspace,
-                          static_cast<float>(std::tan(params.max_slope))};
+  const DeckSearch search{grid,   ground,    cells,
+                          params, workspace, static_cast<float>(std::tan(params.max_slope))};
   std::int32_t found = 0;
   for (std::size_t slot = 0; slot < n; ++slot) {
     if (workspace.candidate[slot] == 0) continue;
@@ -412,7 +437,7 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
     const DeckKind kind = kind_of(search);
     if (kind == DeckKind::kNone) continue;
     mark_members(search, true);
-    if (is_even(search, kind)) {
+    if (is_even(search, kind) && (kind != DeckKind::kRamp || has_wide_part(search))) {
       for (std::size_t k = 0; k < workspace.members.size(); ++k) {
         const auto member = static_cast<std::size_t>(workspace.members[k]);
         cells.deck[member] = found;
