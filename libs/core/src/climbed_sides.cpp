@@ -65,7 +65,7 @@ void label_climbed_sides(FieldWorkspace& field, float reach, DeckWorkspace& work
   for_candidates(field, base, risen, [&workspace](const DeckSidePoint& point) {
     workspace.surface_points.push_back(point);
   });
-  find_side_rings(reach, workspace.surface_points, workspace.sides);
+  find_side_rings(reach, workspace.surface_points, workspace.side_buckets, workspace.sides);
   if (workspace.sides.empty()) return;
   for_candidates(field, base, risen, [&](const DeckSidePoint& point) {
     if (is_on_side(workspace.sides, point.deck, point.x, point.y, reach))

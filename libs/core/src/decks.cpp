@@ -62,8 +62,9 @@ struct DeckSearch {
 
   [[nodiscard]] const DeckLayer& top(std::size_t slot) const { return workspace.top[slot]; }
   [[nodiscard]] bool connected(std::size_t a, std::size_t b) const {
-    const float distance = length_of(top(a).x - top(b).x, top(a).y - top(b).y);
-    return std::abs(top(a).above - top(b).above) <= kSlack + rise * distance;
+    const float apart = std::abs(top(a).above - top(b).above);
+    if (apart <= kSlack) return true;  // most are, wherever they lie
+    return apart <= kSlack + rise * length_of(top(a).x - top(b).x, top(a).y - top(b).y);
   }
   /// Calls `visit` with every observed cell up to `reach` cells away along each axis, and itself.
   template <class Visitor>
@@ -133,7 +134,7 @@ void collect_members(const DeckSearch& search, std::size_t first) {
     const auto slot = static_cast<std::size_t>(workspace.members[next]);
     const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
     workspace.candidate_cells.for_marked_around(at, kReach, [&](CellIndex cell) {
-      const auto other = static_cast<std::size_t>(grid.slot_at(cell));
+      const auto other = static_cast<std::size_t>(grid.slot_within(cell));
       if (search.connected(slot, other)) take(cell, other);
     });
   }
@@ -152,32 +153,59 @@ void mark_members(const DeckSearch& search, bool marked) {
   }
 }
 
+/// The layers of the cells of a deck around one of them.
+struct LayersAround {
+  std::array<const DeckLayer*, (2 * kFarReach + 1) * (2 * kFarReach + 1)> layer;
+  std::size_t size = 0;
+
+  LayersAround(const DeckSearch& search, const std::vector<DeckLayer>& layers, CellIndex cell,
+               int reach) {
+    search.workspace.member_cells.for_marked_around(cell, reach, [&](CellIndex other) {
+      layer[size++] = &layers[static_cast<std::size_t>(search.grid.slot_within(other))];
+    });
+  }
+  void leave_out_below(const DeckPlane& plane, float side) {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < size; ++k) {
+      layer[kept] = layer[k];
+      kept += layer[k]->z < plane.at(layer[k]->x, layer[k]->y) - side ? 0 : 1;
+    }
+    size = kept;
+  }
+  /// About one of them; `height_of` is a member of it.
+  [[nodiscard]] HeightSums sums(const DeckLayer& at, float DeckLayer::*height) const {
+    HeightSums sums;
+    for (std::size_t k = 0; k < size; ++k)
+      sums.add(layer[k]->x - at.x, layer[k]->y - at.y, layer[k]->*height - at.*height);
+    return sums;
+  }
+};
+
 // The surface of a deck at one of its cells: a plane through the layers of the cells up to `reach`
 // cells away, those of sides left out by a second look.
+// \param fit its slope is measured if `sloped`
 // \return whether enough layers lie around
 bool fit_surface(const DeckSearch& search, const std::vector<DeckLayer>& layers, std::size_t slot,
-                 int reach, DeckPlane& plane, SurfaceFit& fit) {
+                 int reach, bool sloped, DeckPlane& plane, SurfaceFit& fit) {
   const DeckLayer& at = layers[slot];
-  const CellIndex cell = search.grid.geometry.index_of(search.grid.cell[slot]);
-  const auto side = static_cast<float>(search.params.side);
   plane = {at.x, at.y, at.z, 0.0F, 0.0F, 0.0F};
-  bool found = false;
-  for (int pass = 0; pass < 2; ++pass) {
-    HeightSums heights, above;
-    search.workspace.member_cells.for_marked_around(cell, reach, [&](CellIndex other) {
-      const DeckLayer& layer = layers[static_cast<std::size_t>(search.grid.slot_at(other))];
-      if (pass > 0 && layer.z < plane.at(layer.x, layer.y) - side) return;
-      heights.add(layer.x - at.x, layer.y - at.y, layer.z - at.z);
-      above.add(layer.x - at.x, layer.y - at.y, layer.above - at.above);
-    });
-    if (heights.n() < kFewestLayers) break;
-    const SumsPlane through = fit_plane(heights, kHold);
-    const SumsPlane over_ground = fit_plane(above, kHold);
+  LayersAround around(search, layers, search.grid.geometry.index_of(search.grid.cell[slot]), reach);
+  if (static_cast<float>(around.size) < kFewestLayers) return false;
+  const auto fit_through = [&] {
+    const SumsPlane through = fit_plane(around.sums(at, &DeckLayer::z), kHold);
     plane = {at.x, at.y, at.z + through.at_centre(), through.gradient_x, through.gradient_y, 0.0F};
-    fit = {std::sqrt(through.variance), length_of(over_ground.gradient_x, over_ground.gradient_y)};
-    found = true;
-  }
-  return found;
+    fit.bend = through.variance;
+  };
+  fit_through();
+  const LayersAround all = around;
+  around.leave_out_below(plane, static_cast<float>(search.params.side));
+  if (static_cast<float>(around.size) < kFewestLayers) around = all;
+  if (around.size < all.size) fit_through();
+  fit.bend = std::sqrt(fit.bend);
+  if (!sloped) return true;
+  const SumsPlane over_ground = fit_plane(around.sums(at, &DeckLayer::above), kHold);
+  fit.slope = length_of(over_ground.gradient_x, over_ground.gradient_y);
+  return true;
 }
 
 float median_of(std::vector<float>& values) {
@@ -187,9 +215,10 @@ float median_of(std::vector<float>& values) {
 }
 
 // Fits the planes at the cells of a deck.
-// \param[out] fit medians over them
+// \param[out] fit medians over them; of the slopes only if `sloped`
 // \return whether there are enough
-bool fit_surfaces(const DeckSearch& search, const std::vector<DeckLayer>& layers, SurfaceFit& fit) {
+bool fit_surfaces(const DeckSearch& search, const std::vector<DeckLayer>& layers, bool sloped,
+                  SurfaceFit& fit) {
   DeckWorkspace& workspace = search.workspace;
   workspace.bends.clear();
   workspace.slopes.clear();
@@ -198,15 +227,16 @@ bool fit_surfaces(const DeckSearch& search, const std::vector<DeckLayer>& layers
     const auto slot = static_cast<std::size_t>(member);
     DeckPlane plane;
     SurfaceFit here{};
-    if (fit_surface(search, layers, slot, kNearReach, plane, here) ||
-        fit_surface(search, layers, slot, kFarReach, plane, here)) {
+    if (fit_surface(search, layers, slot, kNearReach, sloped, plane, here) ||
+        fit_surface(search, layers, slot, kFarReach, sloped, plane, here)) {
       workspace.bends.push_back(here.bend);
-      workspace.slopes.push_back(here.slope);
+      if (sloped) workspace.slopes.push_back(here.slope);
     }
     workspace.planes.push_back(plane);
   }
   if (workspace.bends.size() < kFewestPlanes) return false;
-  fit = {median_of(workspace.bends), median_of(workspace.slopes)};
+  fit.bend = median_of(workspace.bends);
+  if (sloped) fit.slope = median_of(workspace.slopes);
   return true;
 }
 
@@ -239,11 +269,11 @@ DeckKind kind_of(const DeckSearch& search) {
 // cells, a narrow level by their tops, as its sides are in the same cells.
 bool is_even(const DeckSearch& search, DeckKind kind) {
   const DeckWorkspace& workspace = search.workspace;
-  const bool level = kind == DeckKind::kLevel;
+  const bool level = kind == DeckKind::kLevel, sloped = kind == DeckKind::kRamp;
   SurfaceFit fit{};
   for (const bool by_tops : {level, !level}) {
-    if (!fit_surfaces(search, by_tops ? workspace.top : workspace.all, fit)) continue;
-    if (kind == DeckKind::kRamp && fit.slope < kLeastSlope) continue;
+    if (!fit_surfaces(search, by_tops ? workspace.top : workspace.all, sloped, fit)) continue;
+    if (sloped && fit.slope < kLeastSlope) continue;
     if (fit.bend <= static_cast<float>(search.params.unevenness)) return true;
   }
   return false;
