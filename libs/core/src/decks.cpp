@@ -7,6 +7,7 @@
 
 #include "length_of.h"
 #include "mrpt_terrain/core/beam_slope.h"
+#include "slots_around.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -65,21 +66,6 @@ struct DeckSearch {
     const float apart = std::abs(top(a).above - top(b).above);
     if (apart <= kSlack) return true;  // most are, wherever they lie
     return apart <= kSlack + rise * length_of(top(a).x - top(b).x, top(a).y - top(b).y);
-  }
-  /// Calls `visit` with every observed cell up to `reach` cells away along each axis, and itself.
-  template <class Visitor>
-  void visit_around(std::size_t slot, int reach, Visitor&& visit) const {
-    const GridGeometry& geometry = grid.geometry;
-    const CellIndex at = geometry.index_of(grid.cell[slot]);
-    const int first_w = std::max(at.w - reach, 0);
-    const int last_w = std::min(at.w + reach, geometry.cells_w() - 1);
-    const int last_l = std::min(at.l + reach, geometry.cells_l() - 1);
-    for (int l = std::max(at.l - reach, 0); l <= last_l; ++l) {
-      const Slot* slots = grid.slot_of.data() + value_of(geometry.id_of({l, 0}));
-      for (int w = first_w; w <= last_w; ++w) {
-        if (slots[w] != kUnobserved) visit(static_cast<std::size_t>(slots[w]));
-      }
-    }
   }
 };
 
@@ -319,7 +305,7 @@ HeightSums sums_around(const DeckSearch& search, const std::vector<HeightSums>& 
   const FieldCells& cells = search.cells;
   const DeckPlane& at = cells.deck_plane[slot];
   HeightSums sums;
-  search.visit_around(slot, kNearReach, [&](std::size_t other) {
+  for_slots_around(search.grid, slot, kNearReach, [&](std::size_t other) {
     if (cells.deck[other] != cells.deck[slot]) return;
     const DeckPlane& from = cells.deck_plane[other];
     sums.add_shifted(of_cells[other], from.x - at.x, from.y - at.y, from.height - at.height);
