@@ -19,6 +19,7 @@ constexpr float kReach = 0.025F;
 /// Points of sides, and what is found in them.
 struct Sides {
   std::vector<DeckSidePoint> points;
+  DeckSideBuckets buckets;
   std::vector<DeckSide> found;
   RandomGenerator random{3};
   std::int32_t next = 0;  ///< number of a point
@@ -34,7 +35,7 @@ struct Sides {
                         static_cast<float>(y0 + t * (y1 - y0) + e * (x1 - x0) / length), 0.0F});
     }
   }
-  void find() { find_deck_sides(kReach, points, found); }
+  void find() { find_deck_sides(kReach, points, buckets, found); }
   [[nodiscard]] bool on(std::int32_t deck, double x, double y) const {
     return is_on_side(found, deck, static_cast<float>(x), static_cast<float>(y), kReach);
   }
@@ -155,6 +156,7 @@ TEST(DeckSides, FewPointsAreNone) {
 /// Ranges scatter by up to 2 cm.
 struct Rings {
   std::vector<DeckSidePoint> points;
+  DeckSideBuckets buckets;
   std::vector<DeckSide> found;
   RandomGenerator random{5};
 
@@ -170,7 +172,7 @@ struct Rings {
                         static_cast<float>(1.0 - fall * distance)});
     }
   }
-  void find() { find_side_rings(kReach, points, found); }
+  void find() { find_side_rings(kReach, points, buckets, found); }
 };
 
 /// Distance of an upright face 6 m ahead.

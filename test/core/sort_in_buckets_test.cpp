@@ -40,5 +40,15 @@ TEST(SortInBuckets, GivesTheOrderOfTheComparison) {
   }
 }
 
+TEST(PutIntoBuckets, KeepsTheOrderWithinABucket) {
+  std::vector<Entry> entries{{2, 0}, {0, 1}, {2, 2}, {0, 3}, {3, 4}}, scratch;
+  std::vector<std::int32_t> end;
+  put_into_buckets(
+      4, [](const Entry& entry) { return std::size_t{entry.key}; }, entries, scratch, end);
+  EXPECT_TRUE(entries == (std::vector<Entry>{{0, 1}, {0, 3}, {2, 0}, {2, 2}, {3, 4}}));
+  end.resize(4);
+  EXPECT_EQ(end, (std::vector<std::int32_t>{2, 2, 4, 5}));
+}
+
 }  // namespace
 }  // namespace mrpt_terrain

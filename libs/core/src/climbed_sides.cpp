@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "climbed_sides.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -33,16 +34,21 @@ void find_risen_cells(const GroundSurface& surface, const LevelView& base,
   }
 }
 
+// The block that a cell lies in.
+std::int32_t block_of(const CellPoints& cells, std::int32_t slot) {
+  const LatticeCell cell = cells.cell[static_cast<std::size_t>(slot)];
+  const std::int32_t blocks = cells.lattice.side >> kBlockLevel;
+  return (cell.row >> kBlockLevel) * blocks + (cell.column >> kBlockLevel);
+}
+
 /// Calls `visit` with the points of the ground that may be of such a side.
 template <class Visitor>
 void for_candidates(const FieldWorkspace& field, const LevelView& base,
                     const std::vector<std::int32_t>& risen, Visitor&& visit) {
   const CellPoints& cells = field.surface.cells;
-  const std::int32_t blocks = cells.lattice.side >> kBlockLevel;
   for (const std::int32_t item : risen) {
     const auto slot = static_cast<std::size_t>(item);
-    const LatticeCell cell = cells.cell[slot];
-    const std::int32_t block = (cell.row >> kBlockLevel) * blocks + (cell.column >> kBlockLevel);
+    const std::int32_t block = block_of(cells, item);
     for (auto k = static_cast<std::size_t>(cells.first[slot]);
          k < static_cast<std::size_t>(cells.first[slot + 1]); ++k) {
       const CellPoint& p = cells.points[k];
@@ -50,6 +56,17 @@ void for_candidates(const FieldWorkspace& field, const LevelView& base,
         visit(DeckSidePoint{block, p.index, p.x, p.y, p.z});
     }
   }
+}
+
+// Leaves only cells of blocks with sides.
+void keep_beside_sides(const CellPoints& cells, const std::vector<DeckSide>& sides,
+                       std::vector<std::int32_t>& risen) {
+  const auto has_none = [&](std::int32_t slot) {
+    const std::int32_t block = block_of(cells, slot);
+    return std::none_of(sides.begin(), sides.end(),
+                        [block](const DeckSide& side) { return side.deck == block; });
+  };
+  risen.erase(std::remove_if(risen.begin(), risen.end(), has_none), risen.end());
 }
 
 }  // namespace
@@ -65,8 +82,8 @@ void label_climbed_sides(FieldWorkspace& field, float reach, DeckWorkspace& work
   for_candidates(field, base, risen, [&workspace](const DeckSidePoint& point) {
     workspace.surface_points.push_back(point);
   });
-  find_side_rings(reach, workspace.surface_points, workspace.sides);
-  if (workspace.sides.empty()) return;
+  find_side_rings(reach, workspace.surface_points, workspace.side_buckets, workspace.sides);
+  keep_beside_sides(surface.cells, workspace.sides, risen);
   for_candidates(field, base, risen, [&](const DeckSidePoint& point) {
     if (is_on_side(workspace.sides, point.deck, point.x, point.y, reach))
       support[static_cast<std::size_t>(point.point)] = Support::kAbove;

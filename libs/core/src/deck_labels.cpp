@@ -110,8 +110,8 @@ void label_deck_points(const PointsView& scan, const FieldPoints& points,
   SideMap map{grid, workspace.side};
   find_deck_cells(grid, cells, workspace.deck_cell);
   sort_deck_points(scan, points, point_slots, cells, side, support, map, workspace);
-  find_deck_sides(side, workspace.side_points, workspace.sides);
-  find_side_rings(side, workspace.surface_points, workspace.sides);
+  find_deck_sides(side, workspace.side_points, workspace.side_buckets, workspace.sides);
+  find_side_rings(side, workspace.surface_points, workspace.side_buckets, workspace.sides);
   const double part = grid.geometry.cell_size() / SideMap::kParts;
   const int reach = std::clamp(static_cast<int>(params.side / part + 0.5), 1, SideMap::kParts);
   const auto on_side = [&](std::size_t i) {

@@ -2,10 +2,13 @@
 #include "deck_sides.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
 #include "mrpt_terrain/core/random.h"
+#include "sort_in_buckets.h"
+#include "wide_registers.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -57,27 +60,44 @@ bool line_through(const DeckSidePoint& a, const DeckSidePoint& b, DeckSide& line
   return true;
 }
 
-std::size_t count_on(const DeckSide& line, PointRange points, float reach) {
-  std::size_t count = 0;
-  for (const DeckSidePoint& p : points) count += std::abs(line.across(p.x, p.y)) <= reach ? 1U : 0U;
+/// Where the points are, for loops over many of them at once.
+struct Places {
+  std::array<float, kMostPoints> x, y;
+  std::size_t size = 0;
+
+  explicit Places(PointRange points) {
+    for (const DeckSidePoint& p : points) {
+      x[size] = p.x;
+      y[size++] = p.y;
+    }
+  }
+};
+
+MRPT_TERRAIN_WIDE_REGISTERS
+std::int32_t count_on(const DeckSide line, const Places& places, float reach) {
+  std::int32_t count = 0;
+  for (std::size_t i = 0; i < places.size; ++i)
+    count += std::abs(line.across(places.x[i], places.y[i])) <= reach ? 1 : 0;
   return count;
 }
 
 // The best of random lines by the number of points on it (RANSAC, Fischler and Bolles 1981).
 bool find_line(PointRange points, float reach, RandomGenerator& random, DeckSide& best) {
-  std::size_t most = kFewest - 1;
+  const Places places(points);
+  constexpr auto kLeast = static_cast<std::int32_t>(kFewest);
+  std::int32_t most = kLeast - 1;
   const auto n = static_cast<std::uint32_t>(points.size());
   for (int k = 0; k < kHypotheses; ++k) {
     DeckSide line;
     const DeckSidePoint& a = *(points.begin() + random.below(n));
     const DeckSidePoint& b = *(points.begin() + random.below(n));
     if (!line_through(a, b, line)) continue;
-    const std::size_t count = count_on(line, points, reach);
+    const std::int32_t count = count_on(line, places, reach);
     if (count <= most) continue;
     most = count;
     best = line;
   }
-  return most >= kFewest;
+  return most >= kLeast;
 }
 
 // Brings the points on a line, along the stretch without gap that has most of them, to the front.
@@ -227,12 +247,13 @@ PointRange thin_out(PointRange points, std::size_t most) {
   return {points.begin(), kept};
 }
 
-// Seeks up to `most` sides in the points of one deck; `settle` tells which stretches are some.
+// Seeks up to `most` sides of at least `fewest` points each in those of one deck; `settle` tells
+// which stretches are some.
 template <class Settle>
-void find_sides_of_deck(PointRange points, int most, float reach, Settle&& settle,
-                        std::vector<DeckSide>& sides) {
+void find_sides_of_deck(PointRange points, int most, std::size_t fewest, float reach,
+                        Settle&& settle, std::vector<DeckSide>& sides) {
   RandomGenerator random(1);
-  for (int k = 0; k < most && points.size() >= kFewest; ++k) {
+  for (int k = 0; k < most && points.size() >= fewest; ++k) {
     DeckSide side;
     if (!find_line(points, reach, random, side)) return;
     PointRange stretch = take_stretch(side, points, reach);
@@ -242,39 +263,49 @@ void find_sides_of_deck(PointRange points, int most, float reach, Settle&& settl
   }
 }
 
-// Calls `visit` with the points of every deck.
+// Calls `visit` with the points of every deck that has at least `fewest`, in their order in the
+// scan.
 template <class Visitor>
-void for_each_deck(std::vector<DeckSidePoint>& points, Visitor&& visit) {
-  std::sort(points.begin(), points.end(), [](const DeckSidePoint& a, const DeckSidePoint& b) {
-    return a.deck != b.deck ? a.deck < b.deck : a.point < b.point;
-  });
-  for (PointRange of_deck{points.begin(), points.begin()}; of_deck.first != points.end();
-       of_deck.first = of_deck.last) {
-    const std::int32_t deck = of_deck.first->deck;
-    of_deck.last = std::find_if(of_deck.first, points.end(),
-                                [deck](const DeckSidePoint& p) { return p.deck != deck; });
+void for_each_deck(std::size_t fewest, std::vector<DeckSidePoint>& points, DeckSideBuckets& buckets,
+                   Visitor&& visit) {
+  std::int32_t decks = 0;
+  for (const DeckSidePoint& p : points) decks = std::max(decks, p.deck + 1);
+  put_into_buckets(
+      static_cast<std::size_t>(decks),
+      [](const DeckSidePoint& p) { return static_cast<std::size_t>(p.deck); }, points,
+      buckets.points, buckets.end);
+  const auto less = [](const DeckSidePoint& a, const DeckSidePoint& b) {
+    return a.point < b.point;
+  };
+  PointRange of_deck{points.begin(), points.begin()};
+  for (std::size_t deck = 0; deck < static_cast<std::size_t>(decks); ++deck) {
+    of_deck = {of_deck.last, points.begin() + buckets.end[deck]};
+    if (of_deck.size() < fewest) continue;
+    if (!std::is_sorted(of_deck.begin(), of_deck.end(), less))
+      std::sort(of_deck.begin(), of_deck.end(), less);
     visit(of_deck);
   }
 }
 
 }  // namespace
 
-void find_deck_sides(float reach, std::vector<DeckSidePoint>& points,
+void find_deck_sides(float reach, std::vector<DeckSidePoint>& points, DeckSideBuckets& buckets,
                      std::vector<DeckSide>& sides) {
   sides.clear();
-  for_each_deck(points, [&](PointRange of_deck) {
-    find_sides_of_deck(thin_out(of_deck, kMostPoints), kMostSides, reach, settle_side, sides);
+  for_each_deck(kFewest, points, buckets, [&](PointRange of_deck) {
+    find_sides_of_deck(thin_out(of_deck, kMostPoints), kMostSides, kFewest, reach, settle_side,
+                       sides);
   });
 }
 
-void find_side_rings(float reach, std::vector<DeckSidePoint>& points,
+void find_side_rings(float reach, std::vector<DeckSidePoint>& points, DeckSideBuckets& buckets,
                      std::vector<DeckSide>& sides) {
-  for_each_deck(points, [&](PointRange of_deck) {
+  for_each_deck(kFewestOfRing, points, buckets, [&](PointRange of_deck) {
     const PointRange all = thin_out(of_deck, kMostRingPoints);
     const auto settle = [all](PointRange stretch, PointRange, float off, DeckSide& side) {
       return settle_ring(stretch, all, off, side);
     };
-    find_sides_of_deck(all, kMostRings, reach, settle, sides);
+    find_sides_of_deck(all, kMostRings, kFewestOfRing, reach, settle, sides);
   });
   std::sort(sides.begin(), sides.end(),
             [](const DeckSide& a, const DeckSide& b) { return a.deck < b.deck; });

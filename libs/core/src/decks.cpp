@@ -7,6 +7,7 @@
 
 #include "length_of.h"
 #include "mrpt_terrain/core/beam_slope.h"
+#include "slots_around.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -29,9 +30,9 @@ constexpr float kHold = 0.002F;
 // Points of the side of a slope are this many times as far below its surface: where it bends, its
 // own points are below the plane.
 constexpr float kSlopeSide = 4.0F;
-// Planes over stairs that are three cells wide are off their steps, even where every ring near one
-// cell meets a step of its own; at the ends of a ramp they are uneven, too, but not everywhere: a
-// share of the cells is even, if not as even as by the planes around each.
+// Through the cells so far away, no plane fits stairs, even where each ring around one cell meets a
+// step of its own. Where a ramp ends or bends, none fits it either; but it has a face, on which
+// this share of the cells is even, by this many times the unevenness.
 constexpr int kWideReach = 3;
 constexpr float kEvenShare = 0.3F;
 constexpr float kWideUnevenness = 2.0F;
@@ -69,8 +70,9 @@ struct DeckSearch {
 
   [[nodiscard]] const DeckLayer& top(std::size_t slot) const { return workspace.top[slot]; }
   [[nodiscard]] bool connected(std::size_t a, std::size_t b) const {
-    const float distance = length_of(top(a).x - top(b).x, top(a).y - top(b).y);
-    return std::abs(top(a).above - top(b).above) <= kSlack + rise * distance;
+    const float apart = std::abs(top(a).above - top(b).above);
+    if (apart <= kSlack) return true;  // most are, wherever they lie
+    return apart <= kSlack + rise * length_of(top(a).x - top(b).x, top(a).y - top(b).y);
   }
   /// Whether ground alone is seen in one of the cells between two.
   [[nodiscard]] bool divided(CellIndex a, CellIndex b) const {
@@ -80,26 +82,11 @@ struct DeckSearch {
           std::lround(static_cast<float>(k * length) / static_cast<float>(steps)));
     };
     for (int k = 1; k < steps; ++k) {
-      const Slot slot = grid.slot_at({a.l + part(k, l), a.w + part(k, w)});
+      const Slot slot = grid.slot_within({a.l + part(k, l), a.w + part(k, w)});
       if (slot != kUnobserved && ground.rule[static_cast<std::size_t>(slot)] == GroundRule::kGround)
         return true;
     }
     return false;
-  }
-  /// Calls `visit` with every observed cell up to `reach` cells away along each axis, and itself.
-  template <class Visitor>
-  void visit_around(std::size_t slot, int reach, Visitor&& visit) const {
-    const GridGeometry& geometry = grid.geometry;
-    const CellIndex at = geometry.index_of(grid.cell[slot]);
-    const int first_w = std::max(at.w - reach, 0);
-    const int last_w = std::min(at.w + reach, geometry.cells_w() - 1);
-    const int last_l = std::min(at.l + reach, geometry.cells_l() - 1);
-    for (int l = std::max(at.l - reach, 0); l <= last_l; ++l) {
-      const Slot* slots = grid.slot_of.data() + value_of(geometry.id_of({l, 0}));
-      for (int w = first_w; w <= last_w; ++w) {
-        if (slots[w] != kUnobserved) visit(static_cast<std::size_t>(slots[w]));
-      }
-    }
   }
 };
 
@@ -154,7 +141,7 @@ void collect_members(const DeckSearch& search, std::size_t first) {
     const auto slot = static_cast<std::size_t>(workspace.members[next]);
     const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
     workspace.candidate_cells.for_marked_around(at, kReach, [&](CellIndex cell) {
-      const auto other = static_cast<std::size_t>(grid.slot_at(cell));
+      const auto other = static_cast<std::size_t>(grid.slot_within(cell));
       if (search.connected(slot, other) && !search.divided(at, cell)) take(cell, other);
     });
   }
@@ -173,32 +160,59 @@ void mark_members(const DeckSearch& search, bool marked) {
   }
 }
 
+/// The layers of the cells of a deck around one of them.
+struct LayersAround {
+  std::array<const DeckLayer*, (2 * kWideReach + 1) * (2 * kWideReach + 1)> layer;
+  std::size_t size = 0;
+
+  LayersAround(const DeckSearch& search, const std::vector<DeckLayer>& layers, CellIndex cell,
+               int reach) {
+    search.workspace.member_cells.for_marked_around(cell, reach, [&](CellIndex other) {
+      layer[size++] = &layers[static_cast<std::size_t>(search.grid.slot_within(other))];
+    });
+  }
+  void leave_out_below(const DeckPlane& plane, float side) {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < size; ++k) {
+      layer[kept] = layer[k];
+      kept += layer[k]->z < plane.at(layer[k]->x, layer[k]->y) - side ? 0 : 1;
+    }
+    size = kept;
+  }
+  /// About one of them; `height_of` is a member of it.
+  [[nodiscard]] HeightSums sums(const DeckLayer& at, float DeckLayer::*height) const {
+    HeightSums sums;
+    for (std::size_t k = 0; k < size; ++k)
+      sums.add(layer[k]->x - at.x, layer[k]->y - at.y, layer[k]->*height - at.*height);
+    return sums;
+  }
+};
+
 // The surface of a deck at one of its cells: a plane through the layers of the cells up to `reach`
 // cells away, those of sides left out by a second look.
+// \param fit its slope is measured if `sloped`
 // \return whether enough layers lie around
 bool fit_surface(const DeckSearch& search, const std::vector<DeckLayer>& layers, std::size_t slot,
-                 int reach, DeckPlane& plane, SurfaceFit& fit) {
+                 int reach, bool sloped, DeckPlane& plane, SurfaceFit& fit) {
   const DeckLayer& at = layers[slot];
-  const CellIndex cell = search.grid.geometry.index_of(search.grid.cell[slot]);
-  const auto side = static_cast<float>(search.params.side);
   plane = {at.x, at.y, at.z, 0.0F, 0.0F, 0.0F};
-  bool found = false;
-  for (int pass = 0; pass < 2; ++pass) {
-    HeightSums heights, above;
-    search.workspace.member_cells.for_marked_around(cell, reach, [&](CellIndex other) {
-      const DeckLayer& layer = layers[static_cast<std::size_t>(search.grid.slot_at(other))];
-      if (pass > 0 && layer.z < plane.at(layer.x, layer.y) - side) return;
-      heights.add(layer.x - at.x, layer.y - at.y, layer.z - at.z);
-      above.add(layer.x - at.x, layer.y - at.y, layer.above - at.above);
-    });
-    if (heights.n() < kFewestLayers) break;
-    const SumsPlane through = fit_plane(heights, kHold);
-    const SumsPlane over_ground = fit_plane(above, kHold);
+  LayersAround around(search, layers, search.grid.geometry.index_of(search.grid.cell[slot]), reach);
+  if (static_cast<float>(around.size) < kFewestLayers) return false;
+  const auto fit_through = [&] {
+    const SumsPlane through = fit_plane(around.sums(at, &DeckLayer::z), kHold);
     plane = {at.x, at.y, at.z + through.at_centre(), through.gradient_x, through.gradient_y, 0.0F};
-    fit = {std::sqrt(through.variance), length_of(over_ground.gradient_x, over_ground.gradient_y)};
-    found = true;
-  }
-  return found;
+    fit.bend = through.variance;
+  };
+  fit_through();
+  const LayersAround all = around;
+  around.leave_out_below(plane, static_cast<float>(search.params.side));
+  if (static_cast<float>(around.size) < kFewestLayers) around = all;
+  if (around.size < all.size) fit_through();
+  fit.bend = std::sqrt(fit.bend);
+  if (!sloped) return true;
+  const SumsPlane over_ground = fit_plane(around.sums(at, &DeckLayer::above), kHold);
+  fit.slope = length_of(over_ground.gradient_x, over_ground.gradient_y);
+  return true;
 }
 
 // The value that a share of others is less than.
@@ -212,9 +226,10 @@ float quantile_of(std::vector<float>& values, float share) {
 float median_of(std::vector<float>& values) { return quantile_of(values, 0.5F); }
 
 // Fits the planes at the cells of a deck.
-// \param[out] fit medians over them
+// \param[out] fit medians over them; of the slopes only if `sloped`
 // \return whether there are enough
-bool fit_surfaces(const DeckSearch& search, const std::vector<DeckLayer>& layers, SurfaceFit& fit) {
+bool fit_surfaces(const DeckSearch& search, const std::vector<DeckLayer>& layers, bool sloped,
+                  SurfaceFit& fit) {
   DeckWorkspace& workspace = search.workspace;
   workspace.bends.clear();
   workspace.slopes.clear();
@@ -223,15 +238,16 @@ bool fit_surfaces(const DeckSearch& search, const std::vector<DeckLayer>& layers
     const auto slot = static_cast<std::size_t>(member);
     DeckPlane plane;
     SurfaceFit here{};
-    if (fit_surface(search, layers, slot, kNearReach, plane, here) ||
-        fit_surface(search, layers, slot, kFarReach, plane, here)) {
+    if (fit_surface(search, layers, slot, kNearReach, sloped, plane, here) ||
+        fit_surface(search, layers, slot, kFarReach, sloped, plane, here)) {
       workspace.bends.push_back(here.bend);
-      workspace.slopes.push_back(here.slope);
+      if (sloped) workspace.slopes.push_back(here.slope);
     }
     workspace.planes.push_back(plane);
   }
   if (workspace.bends.size() < kFewestPlanes) return false;
-  fit = {median_of(workspace.bends), median_of(workspace.slopes)};
+  fit.bend = median_of(workspace.bends);
+  if (sloped) fit.slope = median_of(workspace.slopes);
   return true;
 }
 
@@ -264,11 +280,11 @@ DeckKind kind_of(const DeckSearch& search) {
 // cells, a narrow level by their tops, as its sides are in the same cells.
 bool is_even(const DeckSearch& search, DeckKind kind) {
   const DeckWorkspace& workspace = search.workspace;
-  const bool level = kind == DeckKind::kLevel;
+  const bool level = kind == DeckKind::kLevel, sloped = kind == DeckKind::kRamp;
   SurfaceFit fit{};
   for (const bool by_tops : {level, !level}) {
-    if (!fit_surfaces(search, by_tops ? workspace.top : workspace.all, fit)) continue;
-    if (kind == DeckKind::kRamp && fit.slope < kLeastSlope) continue;
+    if (!fit_surfaces(search, by_tops ? workspace.top : workspace.all, sloped, fit)) continue;
+    if (sloped && fit.slope < kLeastSlope) continue;
     if (fit.bend <= static_cast<float>(search.params.unevenness)) return true;
   }
   return false;
@@ -282,7 +298,8 @@ bool has_wide_part(const DeckSearch& search) {
     for (const std::int32_t member : workspace.members) {
       DeckPlane plane;
       SurfaceFit here{};
-      if (fit_surface(search, *layers, static_cast<std::size_t>(member), kWideReach, plane, here))
+      if (fit_surface(search, *layers, static_cast<std::size_t>(member), kWideReach, false, plane,
+                      here))
         workspace.bends.push_back(here.bend);
     }
     if (workspace.bends.empty()) continue;
@@ -332,7 +349,7 @@ HeightSums sums_around(const DeckSearch& search, const std::vector<HeightSums>& 
   const FieldCells& cells = search.cells;
   const DeckPlane& at = cells.deck_plane[slot];
   HeightSums sums;
-  search.visit_around(slot, kNearReach, [&](std::size_t other) {
+  for_slots_around(search.grid, slot, kNearReach, [&](std::size_t other) {
     if (cells.deck[other] != cells.deck[slot]) return;
     const DeckPlane& from = cells.deck_plane[other];
     sums.add_shifted(of_cells[other], from.x - at.x, from.y - at.y, from.height - at.height);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "surface_levels.h"
+
 namespace mrpt_terrain {
 namespace {
 
@@ -80,10 +82,12 @@ void measure_field_cells(const FieldWorkspace& workspace, const ElevationGrid& g
   count_points(workspace.points, point_slots, cells);
   ground.rule.resize(grid.observed());
   ground.h_mean.resize(grid.observed());
+  const SquareLattice& lattice = workspace.surface.lattice();
+  const LevelView reference{workspace.surface.node.data(), lattice.side, lattice.cell_size};
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
     const Position2 centre = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[slot]));
     cells.ground[slot] =
-        workspace.surface.height_at(static_cast<float>(centre.x), static_cast<float>(centre.y));
+        reference.at(static_cast<float>(centre.x), static_cast<float>(centre.y)).height;
     ground.h_mean[slot] = grid.h_mean[slot] - cells.ground[slot];
     ground.rule[slot] = cells.above[slot] > 0   ? GroundRule::kHigh
                         : cells.below[slot] > 0 ? GroundRule::kLow

@@ -74,7 +74,7 @@ void link_back(const Linker& linker, std::size_t slot, const FieldClusterParams&
   const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
   auto root = static_cast<std::int32_t>(slot);
   const auto link = [&](CellIndex near, bool touching) {
-    const Slot other = grid.slot_at(near);
+    const Slot other = grid.slot_within(near);
     const auto beside = static_cast<std::size_t>(other);
     if (parent[beside] == root || root_of(parent, other) == root) return;
     if (!linker.compatible(slot, beside, touching) || linker.divided(slot, beside)) return;
@@ -104,7 +104,7 @@ class UnseenLinker {
     const ElevationGrid& grid = linker_.grid;
     const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
     raised.for_marked_before(at, reach_, [&](CellIndex near) {
-      const Slot other = grid.slot_at(near);
+      const Slot other = grid.slot_within(near);
       if (as_high(slot, static_cast<std::size_t>(other)) && is_unseen(at, near))
         unite(parent, static_cast<std::int32_t>(slot), other);
     });

@@ -255,39 +255,59 @@ RimSpread spread_of(const RimSurface& rim, double height, double band, int terms
           std::sqrt(sums.squares_above / (above * free))};
 }
 
-// Puts the origin of the surface into the mean of the points; returns how many are in cells away
-// from the hole.
-int start(const std::vector<HolePoint>& points, RimSurface& rim) {
-  const auto away = std::count_if(points.begin(), points.end(),
-                                  [](const HolePoint& p) { return p.zone == HoleZone::kRim; });
-  const bool enough = away >= kFewestRimPoints;
-  double n = 0.0;
-  rim = {};
-  for (const HolePoint& p : points) {
-    if (!is_around(p) || (enough && p.zone != HoleZone::kRim)) continue;
-    rim.x += p.x;
-    rim.y += p.y;
-    rim.z += p.z;
+/// Sums of places.
+struct PlaceSums {
+  double x = 0.0, y = 0.0, z = 0.0, n = 0.0;
+
+  void add(const HolePoint& p) {
+    x += p.x;
+    y += p.y;
+    z += p.z;
     n += 1.0;
   }
-  const double share = 1.0 / std::max(n, 1.0);
-  rim.x *= share;
-  rim.y *= share;
-  rim.z *= share;
-  return static_cast<int>(away);
-}
+};
 
-// The points around about the origin of the surface, and some of no weight for the lanes that are
-// left over. Those of the first round count.
-void take_around(const std::vector<HolePoint>& points, const RimSurface& rim, bool away_only,
-                 RimPoints& around) {
+// Takes the points around in the frame of the scan. Those in cells away from the hole count.
+void take_around(const std::vector<HolePoint>& points, RimPoints& around, PlaceSums& all,
+                 PlaceSums& away) {
   around.reserve((points.size() + kCellLanes - 1) / kCellLanes * kCellLanes);
   around.size = 0;
   for (const HolePoint& p : points) {
     if (!is_around(p)) continue;
-    const bool first = !away_only || p.zone == HoleZone::kRim;
-    around.add(p.x - rim.x, p.y - rim.y, p.z - rim.z, p.weight, first);
+    const bool is_away = p.zone == HoleZone::kRim;
+    around.add(p.x, p.y, p.z, p.weight, is_away);
+    all.add(p);
+    if (is_away) away.add(p);
   }
+}
+
+// Moves the points into the frame of the surface.
+MRPT_TERRAIN_WIDE_REGISTERS
+void move_to_origin(const RimSurface& rim, RimPoints& points) {
+  const double x = rim.x, y = rim.y, z = rim.z;
+  double *u = points.u.data(), *v = points.v.data(), *w = points.z.data();
+  for (std::size_t i = 0; i < points.size; ++i) {
+    u[i] -= x;
+    v[i] -= y;
+    w[i] -= z;
+  }
+}
+
+// Takes the points around, about their mean, which becomes the origin of the surface, and some of
+// no weight for the lanes that are left over. In the first round those in cells away from the hole
+// count, or all if there are few.
+void start(const std::vector<HolePoint>& points, RimPoints& around, RimSurface& rim) {
+  PlaceSums all, away;
+  take_around(points, around, all, away);
+  const bool enough = away.n >= kFewestRimPoints;
+  const PlaceSums& mean = enough ? away : all;
+  const double share = 1.0 / std::max(mean.n, 1.0);
+  rim = {};
+  rim.x = mean.x * share;
+  rim.y = mean.y * share;
+  rim.z = mean.z * share;
+  if (!enough) around.counted = around.weight;
+  move_to_origin(rim, around);
   while (around.size % kCellLanes != 0) around.add(0.0, 0.0, 0.0, 0.0, false);
 }
 
@@ -300,8 +320,7 @@ bool same(const RimSurface& a, const RimSurface& b) {
 
 bool fit_rim(const std::vector<HolePoint>& points, double low, bool from_above, RimPoints& scratch,
              RimSurface& rim) {
-  const bool away_only = start(points, rim) >= kFewestRimPoints;
-  take_around(points, rim, away_only, scratch);
+  start(points, scratch, rim);
   double band = low, height = 0.0;
   for (int round = 0; round < kRounds; ++round) {
     const bool plane = round < kPlaneRounds;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "hole_rim.h"
 #include "hole_rings.h"
@@ -147,19 +148,23 @@ void measure_rim(const FieldWorkspace& field, HoleWorkspace& workspace) {
   raise_base_to_rim(surface, workspace);
 }
 
-// Height of the rim at a place, or that of the ground where nothing is known of it.
-float rim_at(const GroundSurface& surface, const HoleWorkspace& workspace, float x, float y,
-             float ground) {
-  const SquareLattice& lattice = surface.lattice();
-  const std::int32_t number = lattice.cell_at(x, y);
-  if (number < 0) return ground;
-  const std::int32_t slot = surface.cells.slot_of[static_cast<std::size_t>(number)];
-  if (slot < 0) return ground;
-  const LatticeCell cell = surface.cells.cell[static_cast<std::size_t>(slot)];
-  const RimBase& base = workspace.base[static_cast<std::size_t>(slot)];
-  return base.height + base.gradient_x * (x - lattice.centre(cell.row)) +
-         base.gradient_y * (y - lattice.centre(cell.column));
-}
+/// The height of the rim. Holds copies and addresses, which compilers keep in registers.
+struct RimView {
+  SquareLattice lattice;
+  const std::int32_t* slot_of;
+  const LatticeCell* cell;
+  const RimBase* base;
+
+  /// At a place, or that of the ground where nothing is known of it.
+  [[nodiscard]] float at(float x, float y, float ground) const {
+    const std::int32_t number = lattice.cell_at(x, y);
+    if (number < 0 || slot_of[number] < 0) return ground;
+    const LatticeCell in = cell[slot_of[number]];
+    const RimBase& from = base[slot_of[number]];
+    return from.height + from.gradient_x * (x - lattice.centre(in.row)) +
+           from.gradient_y * (y - lattice.centre(in.column));
+  }
+};
 
 float depth_of(const FieldCells& cells, std::size_t slot) {
   return cells.rim[slot] - cells.floor[slot];
@@ -181,10 +186,13 @@ void mark_candidates(const HoleInput& input, const HoleParams& params, HoleWorks
   workspace.deep.assign(grid.observed(), 0);
   workspace.all.assign(grid.observed(), 0);
   cells.rim.resize(grid.observed());
+  const CellPoints& surface = input.field.surface.cells;
+  const RimView rim{surface.lattice, surface.slot_of.data(), surface.cell.data(),
+                    workspace.base.data()};
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
     const Position2 centre = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[slot]));
-    cells.rim[slot] = rim_at(input.field.surface, workspace, static_cast<float>(centre.x),
-                             static_cast<float>(centre.y), cells.ground[slot]);
+    cells.rim[slot] =
+        rim.at(static_cast<float>(centre.x), static_cast<float>(centre.y), cells.ground[slot]);
     const bool floor = !holds_thing(cells, slot) && cells.on[slot] + cells.below[slot] > 0;
     const float depth = depth_of(cells, slot);
     const bool edge =
@@ -433,19 +441,28 @@ bool measure_depth(HoleCase& hole) {
   if (!fit_rim(hole.workspace.points, hole.params.least_depth, hole.input.origins.known(),
                hole.workspace.rim_points, hole.rim))
     return false;
+  // Of the floor: deep ones, and how many are not.
   std::vector<float>& depths = hole.workspace.values;
   depths.clear();
+  std::size_t shallow = 0;
   in_batches(
       hole.workspace.points, [&hole](PointBatch& batch) { measure_heights(hole.rim, batch); },
-      [&depths](HolePoint& p, float height) {
+      [&](HolePoint& p, float height) {
         p.depth = height - p.z;
-        if (p.zone == HoleZone::kFloor) depths.push_back(p.depth);
+        if (p.zone != HoleZone::kFloor) return;
+        if (static_cast<double>(p.depth) >= hole.params.mean_depth) {
+          depths.push_back(p.depth);
+        } else {
+          ++shallow;
+        }
       });
-  if (depths.empty()) return false;
-  const auto fifth = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() * 4 / 5);
+  // Four fifths of all are less deep.
+  const std::size_t less = (depths.size() + shallow) * 4 / 5;
+  if (less < shallow || depths.empty()) return false;
+  const auto fifth = depths.begin() + static_cast<std::ptrdiff_t>(less - shallow);
   std::nth_element(depths.begin(), fifth, depths.end());
   hole.depth = *fifth;
-  return hole.depth >= hole.params.mean_depth;
+  return true;
 }
 
 // Adds the cells next to the members that hold mostly deep points, and those next to these.
@@ -723,6 +740,16 @@ void add_hole(HoleSearch& search, const HoleDescription& description) {
   add_cells(search.input.grid, search.workspace.members, search.hole_cells);
 }
 
+// The first candidate of a kind from a slot on; behind the last slot if there is none.
+std::size_t next_of(const std::vector<std::uint8_t>& candidate, std::uint8_t kind,
+                    std::size_t slot) {
+  if (slot == candidate.size()) return slot;
+  const void* found = std::memchr(candidate.data() + slot, kind, candidate.size() - slot);
+  return found == nullptr
+             ? candidate.size()
+             : static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - candidate.data());
+}
+
 // Looks at the candidates of a kind, cells at least `bar` below the rim.
 // \return whether there are deeper parts of what is no hole as a whole
 bool look_at_candidates(HoleSearch& search, std::uint8_t kind, double bar) {
@@ -730,8 +757,8 @@ bool look_at_candidates(HoleSearch& search, std::uint8_t kind, double bar) {
   const ElevationGrid& grid = search.input.grid;
   const double deeper = bar + kDeeperStep * search.params.least_depth;
   bool any_deeper = false;
-  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
-    if (workspace.candidate[slot] != kind) continue;
+  for (std::size_t slot = next_of(workspace.candidate, kind, 0); slot < grid.observed();
+       slot = next_of(workspace.candidate, kind, slot)) {
     collect_members(grid, slot, workspace);
     const std::size_t members = workspace.members.size();
     HoleCase hole{
@@ -761,7 +788,8 @@ void find_holes(const HoleInput& input, const HoleParams& params, HoleWorkspace&
   HoleSearch search{input, params, workspace, cells, ground, holes, hole_cells};
   for (double bar = params.least_depth; look_at_candidates(search, kFloorCell, bar);
        bar += kDeeperStep * params.least_depth) {
-    std::replace(workspace.candidate.begin(), workspace.candidate.end(), kDeeperCell, kFloorCell);
+    // Without branches, so that compilers work on many at once.
+    for (std::uint8_t& kind : workspace.candidate) kind = kind == kDeeperCell ? kFloorCell : kind;
   }
   look_at_candidates(search, kEdgeCell, params.least_depth);
 }

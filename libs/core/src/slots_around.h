@@ -17,13 +17,14 @@ namespace mrpt_terrain {
 /// Calls f with every observed slot up to `reach` cells away from a cell, its own included.
 template <class F>
 void for_slots_around(const ElevationGrid& grid, CellIndex at, int reach, F&& f) {
-  for (int l = std::max(at.l - reach, 0); l <= std::min(at.l + reach, grid.geometry.cells_l() - 1);
-       ++l) {
-    for (int w = std::max(at.w - reach, 0);
-         w <= std::min(at.w + reach, grid.geometry.cells_w() - 1); ++w) {
-      const Slot other =
-          grid.slot_of[static_cast<std::size_t>(value_of(grid.geometry.id_of({l, w})))];
-      if (other != kUnobserved) f(static_cast<std::size_t>(other));
+  const GridGeometry& geometry = grid.geometry;
+  const int first_w = std::max(at.w - reach, 0);
+  const int last_w = std::min(at.w + reach, geometry.cells_w() - 1);
+  const int last_l = std::min(at.l + reach, geometry.cells_l() - 1);
+  for (int l = std::max(at.l - reach, 0); l <= last_l; ++l) {
+    const Slot* slots = grid.slot_of.data() + value_of(geometry.id_of({l, 0}));
+    for (int w = first_w; w <= last_w; ++w) {
+      if (slots[w] != kUnobserved) f(static_cast<std::size_t>(slots[w]));
     }
   }
 }

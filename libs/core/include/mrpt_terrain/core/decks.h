@@ -88,6 +88,12 @@ struct DeckSidePoint {
   float x = 0.0F, y = 0.0F, z = 0.0F;
 };
 
+/// Scratch memory for bringing such points together by deck.
+struct DeckSideBuckets {
+  std::vector<DeckSidePoint> points;
+  std::vector<std::int32_t> end;  ///< per deck
+};
+
 /// An upright side of a deck, seen from above: a stretch of a line, metres.
 struct DeckSide {
   std::int32_t deck = -1;
@@ -122,6 +128,7 @@ struct DeckWorkspace {
   std::vector<std::int32_t> low_side;   ///< points below a deck's surface that are ground so far
   std::vector<std::int32_t> deck_cell;  ///< per slot: itself or the cell of a deck beside, or -1
   std::vector<DeckSidePoint> side_points, surface_points;  ///< below a surface, and on one
+  DeckSideBuckets side_buckets;
   std::vector<DeckSide> sides;
 };
 

@@ -53,9 +53,11 @@ struct ElevationGrid {
   [[nodiscard]] std::size_t observed() const { return cell.size(); }
   /// Slot of a cell; kUnobserved also for cells outside the grid.
   [[nodiscard]] Slot slot_at(CellIndex index) const {
-    return geometry.contains(index)
-               ? slot_of[static_cast<std::size_t>(value_of(geometry.id_of(index)))]
-               : kUnobserved;
+    return geometry.contains(index) ? slot_within(index) : kUnobserved;
+  }
+  /// The same for a cell that is known to lie in the grid.
+  [[nodiscard]] Slot slot_within(CellIndex index) const {
+    return slot_of[static_cast<std::size_t>(value_of(geometry.id_of(index)))];
   }
   /// Number, mean and scatter of the points of a slot.
   [[nodiscard]] Moments moments(std::size_t slot) const { return moments_from(sums[slot]); }

@@ -76,7 +76,9 @@ class GridGeometry {
   }
 
   [[nodiscard]] bool contains(CellIndex cell) const {
-    return cell.l >= 0 && cell.l < cells_l_ && cell.w >= 0 && cell.w < cells_w_;
+    // Negative numbers are large ones without sign.
+    return static_cast<unsigned>(cell.l) < static_cast<unsigned>(cells_l_) &&
+           static_cast<unsigned>(cell.w) < static_cast<unsigned>(cells_w_);
   }
   /// Centre of a cell, metres.
   [[nodiscard]] Position2 centre_of(CellIndex cell) const {
