@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "passed_beams.h"
 #include "thing_pieces.h"
 
 namespace mrpt_terrain {
 
 /// Unites what hangs above ground that is seen with its legs: narrow things beside it that end
 /// there. And four posts at the corners of a rectangle, which carry something that no ring meets.
+/// And two walls opposite each other.
 /// \param pieces measured
-void link_carried_things(const ThingPieces& pieces);
+/// \param beams null: unknown
+void link_carried_things(const ThingPieces& pieces, const PassedBeams* beams);
 
 }  // namespace mrpt_terrain

@@ -220,7 +220,7 @@ void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& gr
   const bool standing = divide_standing_things(pieces);
   const bool crossing = divide_crossing_strips(pieces);
   if (standing || crossing) pieces.measure();
-  link_carried_things(pieces);
+  link_carried_things(pieces, linker.beams);
   link_loose_things(pieces);
   if (beams) link_continued_things(pieces, *beams);
   find_gentle_rises(pieces);
