@@ -206,7 +206,7 @@ class AbutmentLinker {
 
 }  // namespace
 
-void link_carried_things(const ThingPieces& pieces, const PassedBeams* beams) {
+void link_carried_things(const ThingPieces& pieces) {
   std::vector<std::int32_t>& posts = pieces.workspace.posts;
   posts.clear();
   for (std::size_t k = 0; k < pieces.all().size(); ++k)
@@ -215,6 +215,9 @@ void link_carried_things(const ThingPieces& pieces, const PassedBeams* beams) {
     link_to_hanging(pieces, pieces.all()[static_cast<std::size_t>(post)]);
   link_hanging(pieces);
   link_rectangles(pieces);
+}
+
+void link_abutments(const ThingPieces& pieces, const PassedBeams* beams) {
   AbutmentLinker(pieces, beams).link();
 }
 

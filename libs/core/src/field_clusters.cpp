@@ -220,9 +220,11 @@ void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& gr
   const bool standing = divide_standing_things(pieces);
   const bool crossing = divide_crossing_strips(pieces);
   if (standing || crossing) pieces.measure();
-  link_carried_things(pieces, linker.beams);
+  link_carried_things(pieces);
   link_loose_things(pieces);
   if (beams) link_continued_things(pieces, *beams);
+  pieces.measure();
+  link_abutments(pieces, linker.beams);
   find_gentle_rises(pieces);
   count_members(linker, workspace);
   number_things(params, workspace, result);
