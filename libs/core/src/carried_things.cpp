@@ -9,15 +9,16 @@
 namespace mrpt_terrain {
 namespace {
 
-// Legs are at most so wide (centres of cells), at most so high, and at most so far from what is
-// seen of that which they carry, metres; those that are nearly as high may be farther away.
+// Legs are at most so wide (centres of cells), and at most so far from what is seen of that which
+// they carry, metres; those that are nearly as high may be farther away. So may be columns of
+// points on the walls that carry a deck.
 constexpr float kLegWidth = 0.3F;
-constexpr float kLegHeight = 1.5F;
 constexpr double kLegReach = 0.8, kHighLegReach = 1.0;
 // Parts of what hangs, seen by a ring here and one there, are at most so far apart, metres.
 constexpr double kHangingGap = 0.6;
-// Three or four legs: sides of their rectangle, by how much their heights may differ, by how much
-// the fourth may be off, metres; cosine of the angle between two sides.
+// Three or four legs are at most so high; sides of their rectangle, by how much their heights may
+// differ, by how much the fourth may be off, metres; cosine of the angle between two sides.
+constexpr float kLegHeight = 1.5F;
 constexpr float kShortSide = 0.4F, kLongSide = 2.0F;
 constexpr float kAsHigh = 0.15F;
 constexpr float kCorner = 0.25F;
@@ -35,7 +36,7 @@ constexpr float kTopShare = 0.3F;
 
 bool is_post(const ThingPiece& piece, const FieldClusterParams& params) {
   return piece.end - piece.begin <= kLegWidth && piece.left - piece.right <= kLegWidth &&
-         piece.high > static_cast<float>(params.step) && piece.high < kLegHeight &&
+         piece.high > static_cast<float>(params.step) &&
          piece.high - piece.low > static_cast<float>(params.flat);
 }
 
@@ -108,10 +109,13 @@ bool is_opposite(const ThingPiece& corner, const ThingPiece& a, const ThingPiece
 }
 
 void link_rectangles(const ThingPieces& pieces) {
-  const std::vector<std::int32_t>& posts = pieces.workspace.posts;
+  std::vector<std::int32_t>& posts = pieces.workspace.posts;
   const auto piece = [&pieces](std::int32_t number) -> const ThingPiece& {
     return pieces.all()[static_cast<std::size_t>(number)];
   };
+  posts.erase(std::remove_if(posts.begin(), posts.end(),
+                             [&](std::int32_t post) { return piece(post).high >= kLegHeight; }),
+              posts.end());
   for (const std::int32_t corner : posts) {
     const ThingPiece& c = piece(corner);
     for (std::size_t i = 0; i < posts.size(); ++i) {
