@@ -154,6 +154,28 @@ TEST(DividedThings, KerbsThatMeetAreTwo) {
   EXPECT_TRUE(worlds::all_one(kerbs(meeting, false).things_at(places))) << "no edge is sharp";
 }
 
+// Its cells are more than a strip is wide.
+TEST(DividedThings, AWideKerbIsOneStrip) {
+  const auto things = [](double width) {
+    return kerbs({{4.0, 8.0, -width, 0.0}, {5.8, 6.2, 0.0, 3.0}})
+        .things_at({{4.3, -0.1}, {4.3, 0.1 - width}, {6.1, 2.5}});
+  };
+  const std::vector<std::int32_t> kerb = things(0.8);
+  EXPECT_EQ(kerb[0], kerb[1]);
+  EXPECT_NE(kerb[0], kerb[2]);
+  EXPECT_TRUE(worlds::all_one(things(1.6))) << "an area";
+}
+
+// They touch where they begin.
+TEST(DividedThings, KerbsAtASmallAngleAreTwo) {
+  const std::vector<worlds::Rect> meeting{{4.0, 9.0, 0.0, 0.2},
+                                          {4.0, 5.0, 0.2, 0.4},
+                                          {5.0, 6.0, 0.4, 0.6},
+                                          {6.0, 7.0, 0.6, 0.8},
+                                          {7.0, 9.0, 0.8, 1.2}};
+  EXPECT_TRUE(worlds::all_apart(kerbs(meeting).things_at({{8.5, 0.1}, {8.5, 1.1}})));
+}
+
 // So far away, cells with two others between are linked.
 TEST(DividedThings, KerbsSideBySideAreApartIfTheGroundIsSeenBetween) {
   const std::vector<worlds::Rect> three{

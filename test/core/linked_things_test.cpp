@@ -42,6 +42,15 @@ TEST(LinkedThings, PostsBesideABoxOrOfOtherHeightsAreNoLegs) {
     EXPECT_TRUE(all_apart(table->scene.things_at(table->places)));
 }
 
+// Of a deck 2.4 m up, and a column of points on a wall that carries it.
+TEST(LinkedThings, WhatCarriesADeckMayBeHigh) {
+  Scene scene;
+  scene.thing({2.4, 4.0, 0.0, 0.2}, 2.36F, 2.4F);
+  scene.ground({2.4, 4.0, 0.0, 0.2});
+  scene.thing(at(3.1, -0.5), 0.05F, 2.3F);
+  EXPECT_TRUE(all_one(scene.things_at({{3.1, 0.1}, {3.1, -0.5}})));
+}
+
 /// A row of cells of a table's top 0.8 m high, below which the ground is seen.
 void add_top(Scene& scene, double y, float high) {
   const Rect row{2.4, 4.0, y - 0.1, y + 0.1};
@@ -103,16 +112,18 @@ TEST(LinkedThings, ThreeCornersOfARectangleWillDo) {
 }
 
 TEST(LinkedThings, PostsThatAreNoRectangleOrNotAsHighStayApart) {
-  Posts two, lower, skew, wide;
+  Posts two, lower, skew, wide, high;
   for (Posts* posts : {&two, &lower, &skew}) {
     posts->add(2.1, 2.1, 0.7F);
     posts->add(3.3, 2.1, 0.7F);
   }
+  for (const double x : {2.1, 3.3})
+    for (const double y : {2.1, 2.9}) high.add(x, y, 1.8F);
   lower.add(2.1, 2.9, 0.5F);
   skew.add(2.9, 2.9, 0.7F);
   for (const double x : {2.1, 5.1})
     for (const double y : {2.1, 2.9}) wide.add(x, y, 0.7F);
-  for (const Posts* posts : {&two, &lower, &skew, &wide})
+  for (const Posts* posts : {&two, &lower, &skew, &wide, &high})
     EXPECT_TRUE(all_apart(posts->scene.things_at(posts->places)));
 }
 
@@ -148,6 +159,21 @@ TEST(LinkedThings, AGateIsNoHiddenWall) {
   // ...and one meets a thing far behind.
   low.scene.thing({9.4, 9.6, -0.2, 0.2}, 0.5F, 1.5F);
   EXPECT_TRUE(all_apart(low.things()));
+}
+
+/// A wall at a flat angle to the beams, which the next column of them meets 0.8 m farther along;
+/// the ground before it is seen between.
+std::vector<std::int32_t> flat_wall(double y) {
+  Scene scene;
+  scene.thing({4.0, 6.0, y, y + 0.2}, 0.05F, 0.9F);
+  scene.thing(at(6.7, y + 0.1), 0.05F, 0.9F);
+  scene.ground({6.0, 6.6, y, y + 0.2});
+  return scene.things_at({{4.5, y + 0.1}, {6.7, y + 0.1}}, &kSensor);
+}
+
+TEST(LinkedThings, WhatColumnsOfBeamsMeetFarApartIsOneWall) {
+  EXPECT_TRUE(all_one(flat_wall(0.6)));
+  EXPECT_TRUE(all_apart(flat_wall(3.0))) << "beams pass between";
 }
 
 TEST(LinkedThings, WhatIsFarLowerOrBesideTheLineIsAnotherThing) {
@@ -217,9 +243,23 @@ struct Abutments {
 TEST(LinkedThings, TwoWallsThatAreAlikeAndOppositeEachOtherCarryADeck) {
   const Abutments bridge;
   EXPECT_TRUE(all_one(bridge.scene.things_at(bridge.places)));
-  const Abutments lower(3.0, 1.5F), shifted(3.6), wide(3.0, 2.0F, 6.4);
+  const Abutments nearer(3.0, 1.5F);
+  EXPECT_TRUE(all_one(nearer.scene.things_at(nearer.places))) << "the top ring ends lower on it";
+  const Abutments lower(3.0, 1.3F), shifted(3.6), wide(3.0, 2.0F, 6.4);
   for (const Abutments* street : {&lower, &shifted, &wide})
     EXPECT_TRUE(all_apart(street->scene.things_at(street->places)));
+}
+
+// The second wall ends opposite the middle of the first.
+TEST(LinkedThings, PartOfAnAbutmentMayBeHidden) {
+  Scene scene;
+  scene.thing({3.0, 6.0, -1.6, -1.4}, 0.05F, 2.0F);
+  scene.thing({3.0, 4.6, 1.4, 1.6}, 0.05F, 2.0F);
+  const std::vector<Position2> places{{4.1, -1.5}, {4.1, 1.5}};
+  EXPECT_TRUE(all_one(scene.things_at(places, &kSensor)));
+  EXPECT_TRUE(all_apart(scene.things_at(places))) << "no sensor, no beams";
+  scene.ground({6.4, 6.8, 1.8, 2.2});
+  EXPECT_TRUE(all_apart(scene.things_at(places, &kSensor))) << "the ground behind is seen";
 }
 
 /// Two pieces of a lawn, the first 0.2 m high, with a point on the ground between.

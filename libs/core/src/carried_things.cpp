@@ -9,32 +9,34 @@
 namespace mrpt_terrain {
 namespace {
 
-// Legs are at most so wide (centres of cells), at most so high, and at most so far from what is
-// seen of that which they carry, metres; those that are nearly as high may be farther away.
+// Legs are at most so wide (centres of cells), and at most so far from what is seen of that which
+// they carry, metres; those that are nearly as high may be farther away. So may be columns of
+// points on the walls that carry a deck.
 constexpr float kLegWidth = 0.3F;
-constexpr float kLegHeight = 1.5F;
 constexpr double kLegReach = 0.8, kHighLegReach = 1.0;
 // Parts of what hangs, seen by a ring here and one there, are at most so far apart, metres.
 constexpr double kHangingGap = 0.6;
-// Three or four legs: sides of their rectangle, by how much their heights may differ, by how much
-// the fourth may be off, metres; cosine of the angle between two sides.
+// Three or four legs are at most so high; sides of their rectangle, by how much their heights may
+// differ, by how much the fourth may be off, metres; cosine of the angle between two sides.
+constexpr float kLegHeight = 1.5F;
 constexpr float kShortSide = 0.4F, kLongSide = 2.0F;
 constexpr float kAsHigh = 0.15F;
 constexpr float kCorner = 0.25F;
 constexpr float kSquare = 0.2F;
 // Two walls that carry a deck: so high, so long (longer ones line corridors and streets), so many
 // times as long as wide, so far apart, and their ends at most so far from opposite, metres; sine of
-// the angle between them, and by which share their heights may differ.
+// the angle between them, and by which share their heights may differ: the top ring ends lower on
+// the nearer one.
 constexpr float kWallHeight = 0.8F;
 constexpr float kWallLength = 1.5F, kMostWallLength = 6.0F, kSlender = 2.5F;
 constexpr float kNarrowSpan = 1.5F, kWideSpan = 5.0F;
 constexpr float kOpposite = 0.3F;
 constexpr float kParallel = 0.1F;
-constexpr float kTopShare = 0.15F;
+constexpr float kTopShare = 0.3F;
 
 bool is_post(const ThingPiece& piece, const FieldClusterParams& params) {
   return piece.end - piece.begin <= kLegWidth && piece.left - piece.right <= kLegWidth &&
-         piece.high > static_cast<float>(params.step) && piece.high < kLegHeight &&
+         piece.high > static_cast<float>(params.step) &&
          piece.high - piece.low > static_cast<float>(params.flat);
 }
 
@@ -107,10 +109,13 @@ bool is_opposite(const ThingPiece& corner, const ThingPiece& a, const ThingPiece
 }
 
 void link_rectangles(const ThingPieces& pieces) {
-  const std::vector<std::int32_t>& posts = pieces.workspace.posts;
+  std::vector<std::int32_t>& posts = pieces.workspace.posts;
   const auto piece = [&pieces](std::int32_t number) -> const ThingPiece& {
     return pieces.all()[static_cast<std::size_t>(number)];
   };
+  posts.erase(std::remove_if(posts.begin(), posts.end(),
+                             [&](std::int32_t post) { return piece(post).high >= kLegHeight; }),
+              posts.end());
   for (const std::int32_t corner : posts) {
     const ThingPiece& c = piece(corner);
     for (std::size_t i = 0; i < posts.size(); ++i) {
@@ -132,47 +137,76 @@ void link_rectangles(const ThingPieces& pieces) {
   }
 }
 
-bool is_wall(const ThingPiece& piece, float cell) {
-  const float length = piece.end - piece.begin + cell;
-  return piece.high > kWallHeight && length >= kWallLength && length <= kMostWallLength &&
-         length >= kSlender * (piece.left - piece.right + cell);
-}
+/// Looks for walls opposite each other.
+class AbutmentLinker {
+ public:
+  AbutmentLinker(const ThingPieces& pieces, const PassedBeams* beams)
+      : pieces_(pieces),
+        beams_(beams),
+        cell_(static_cast<float>(pieces.grid.geometry.cell_size())) {}
 
-// Whether two walls are as long and as high as each other, and opposite.
-bool are_abutments(const ThingPiece& a, const ThingPiece& b) {
-  if (std::abs(a.high - b.high) > std::max(kAsHigh, kTopShare * std::max(a.high, b.high)) ||
-      std::abs(a.along_x * b.along_y - a.along_y * b.along_x) > kParallel)
-    return false;
-  float begin = 1e9F, end = -1e9F, right = 1e9F, left = -1e9F;
-  for (const float along : {b.begin, b.end}) {
-    for (const float across : {b.right, b.left}) {
-      const Position2 corner = b.place(along, across);
-      const auto x = static_cast<float>(corner.x), y = static_cast<float>(corner.y);
-      begin = std::min(begin, a.along_of(x, y));
-      end = std::max(end, a.along_of(x, y));
-      right = std::min(right, a.across_of(x, y));
-      left = std::max(left, a.across_of(x, y));
+  void link() const {
+    std::vector<std::int32_t>& walls = pieces_.workspace.posts;
+    walls.clear();
+    for (std::size_t k = 0; k < pieces_.all().size(); ++k)
+      if (is_wall(pieces_.all()[k])) walls.push_back(static_cast<std::int32_t>(k));
+    for (std::size_t b = 1; b < walls.size(); ++b) {
+      const ThingPiece& second = pieces_.all()[static_cast<std::size_t>(walls[b])];
+      for (std::size_t a = 0; a < b; ++a) {
+        const ThingPiece& first = pieces_.all()[static_cast<std::size_t>(walls[a])];
+        if (are_alike(first, second) &&
+            (are_opposite(first, second) || are_opposite(second, first)))
+          pieces_.unite(first.slot, second.slot);
+      }
     }
   }
-  const float span = std::max(right - a.left, a.right - left);
-  return std::abs(begin - a.begin) <= kOpposite && std::abs(end - a.end) <= kOpposite &&
-         span >= kNarrowSpan && span <= kWideSpan;
-}
 
-void link_abutments(const ThingPieces& pieces) {
-  std::vector<std::int32_t>& walls = pieces.workspace.posts;
-  walls.clear();
-  const auto cell = static_cast<float>(pieces.grid.geometry.cell_size());
-  for (std::size_t k = 0; k < pieces.all().size(); ++k)
-    if (is_wall(pieces.all()[k], cell)) walls.push_back(static_cast<std::int32_t>(k));
-  for (std::size_t b = 1; b < walls.size(); ++b) {
-    const ThingPiece& second = pieces.all()[static_cast<std::size_t>(walls[b])];
-    for (std::size_t a = 0; a < b; ++a) {
-      const ThingPiece& first = pieces.all()[static_cast<std::size_t>(walls[a])];
-      if (are_abutments(first, second)) pieces.unite(first.slot, second.slot);
-    }
+ private:
+  [[nodiscard]] bool is_wall(const ThingPiece& piece) const {
+    const float length = piece.end - piece.begin + cell_;
+    return piece.high > kWallHeight && length >= kWallLength && length <= kMostWallLength &&
+           length >= kSlender * (piece.left - piece.right + cell_);
   }
-}
+  static bool are_alike(const ThingPiece& a, const ThingPiece& b) {
+    return std::abs(a.high - b.high) <= std::max(kAsHigh, kTopShare * std::max(a.high, b.high)) &&
+           std::abs(a.along_x * b.along_y - a.along_y * b.along_x) <= kParallel;
+  }
+  // Whether both ends of one wall are opposite those of another, or one end, where the rest of the
+  // shorter wall may be hidden.
+  [[nodiscard]] bool are_opposite(const ThingPiece& a, const ThingPiece& b) const {
+    float begin = 1e9F, end = -1e9F, right = 1e9F, left = -1e9F;
+    for (const float along : {b.begin, b.end}) {
+      for (const float across : {b.right, b.left}) {
+        const Position2 corner = b.place(along, across);
+        const auto x = static_cast<float>(corner.x), y = static_cast<float>(corner.y);
+        begin = std::min(begin, a.along_of(x, y));
+        end = std::max(end, a.along_of(x, y));
+        right = std::min(right, a.across_of(x, y));
+        left = std::max(left, a.across_of(x, y));
+      }
+    }
+    const float span = std::max(right - a.left, a.right - left);
+    if (span < kNarrowSpan || span > kWideSpan) return false;
+    const bool begins = std::abs(begin - a.begin) <= kOpposite;
+    const bool ends = std::abs(end - a.end) <= kOpposite;
+    if (begins && ends) return true;
+    const float across = 0.5F * (right + left), top = std::min(a.top, b.top);
+    if (begins && end < a.end) return is_hidden(a, end, a.end, across, top);
+    return ends && begin > a.begin && is_hidden(a, a.begin, begin, across, top);
+  }
+  // Whether no beam has passed where a wall would go on, opposite a part of another one.
+  [[nodiscard]] bool is_hidden(const ThingPiece& wall, float begin, float end, float across,
+                               float top) const {
+    if (beams_ == nullptr) return false;
+    for (float s = begin + cell_; s < end; s += cell_)
+      if (beams_->have_passed(wall.place(s, across), wall.ground, wall.ground + top)) return false;
+    return true;
+  }
+
+  const ThingPieces& pieces_;
+  const PassedBeams* beams_;
+  float cell_;
+};
 
 }  // namespace
 
@@ -185,7 +219,10 @@ void link_carried_things(const ThingPieces& pieces) {
     link_to_hanging(pieces, pieces.all()[static_cast<std::size_t>(post)]);
   link_hanging(pieces);
   link_rectangles(pieces);
-  link_abutments(pieces);
+}
+
+void link_abutments(const ThingPieces& pieces, const PassedBeams* beams) {
+  AbutmentLinker(pieces, beams).link();
 }
 
 }  // namespace mrpt_terrain

@@ -186,11 +186,12 @@ class Continuation {
     for (float s = end + cell_; s <= limit + cell_; s += cell_) {
       bool own = false;
       const ThingPiece* met = nullptr;
+      const bool narrow = beams_.between_columns(line.place(end, 0.0F), line.place(s, 0.0F));
       for (const float across : {0.0F, -cell_, cell_}) {
         const Slot seen = slot_at(pieces_.grid, line.place(s, across));
         if (seen == kUnobserved) continue;
         const bool member = pieces_.is_member(static_cast<std::size_t>(seen));
-        if (!member && across == 0.0F) return;  // the ground is seen there
+        if (!member && across == 0.0F && !narrow) return;  // the ground is seen there
         if (!member) continue;
         if (pieces_.same_thing(seen, piece.slot)) {
           own = true;
@@ -199,7 +200,9 @@ class Continuation {
         }
       }
       const Gap gap{end, s};
-      if (!own && (met == nullptr || !goes_on(piece, *met, line, gap))) continue;
+      if (!own && (met == nullptr || !goes_on(piece, *met, line, gap) ||
+                   (!narrow && !is_closed(piece, *met, line, gap))))
+        continue;
       if (!own) pieces_.unite(piece.slot, met->slot);
       end = s;
     }
@@ -215,7 +218,7 @@ class Continuation {
         0.5F * (piece.left - piece.right) + cell_ + 0.5F * cell_ * gap.length() / length;
     Extent extent;
     extent.add(other, line);
-    return extent.right >= -half && extent.left <= half && is_closed(piece, other, line, gap);
+    return extent.right >= -half && extent.left <= half;
   }
 
   // Whether two low things are parts of one, seen by two rings.

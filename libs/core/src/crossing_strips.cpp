@@ -23,13 +23,17 @@ constexpr float kGround = 0.5F;
 constexpr float kWidth = 0.5F;
 constexpr float kLength = 1.25F;
 constexpr std::int32_t kGap = 3;
-constexpr std::int32_t kMostStrips = 5;
+constexpr std::int32_t kMostStrips = 3;
 constexpr float kLeftOver = 0.15F;
 // Directions that are tried, and by how many of them two strips differ that are not side by side.
-constexpr int kDirections = 45;
-constexpr int kSameDirection = 7;
-// Strips side by side are at least so far apart, metres; nearer, they are an area.
+constexpr int kDirections = 90;
+constexpr int kSameDirection = 14;
+// Strips side by side are at least so far apart, metres, along this share of one of them: kerbs may
+// meet at an end. Nearer, they are one strip, if that is no wider than this (centres of cells), or
+// else an area.
 constexpr float kApart = 0.35F;
+constexpr float kApartShare = 0.5F;
+constexpr float kWidest = 1.0F;
 // Bins across a strip, per cell.
 constexpr float kBinsPerCell = 2.0F;
 
@@ -143,10 +147,14 @@ class StripDivider {
       for (int k = 0; k < kDirections; ++k) look_along(k, best);
       if (best.occupied < fewest_) break;
       take(best);
-      if (!is_apart(best)) return false;
+      left -= static_cast<float>(best.cells);
+      const std::int32_t beside = strip_beside(best);
+      if (beside != strips_) {
+        if (!add_to(beside)) return false;
+        continue;
+      }
       direction_of_[static_cast<std::size_t>(strips_)] = best.direction;
       ++strips_;
-      left -= static_cast<float>(best.cells);
     }
     return strips_ >= 2 && left <= most_left;
   }
@@ -241,19 +249,41 @@ class StripDivider {
     }
   }
 
-  // Whether a strip that was taken is apart from those beside it.
-  [[nodiscard]] bool is_apart(const Strip& strip) const {
+  // The strip to which the one that was taken last lies side by side; else that one itself.
+  [[nodiscard]] std::int32_t strip_beside(const Strip& strip) const {
     for (std::int32_t other = 0; other < strips_; ++other) {
       const int turn = std::abs(strip.direction - direction_of_[static_cast<std::size_t>(other)]);
       if (std::min(turn, kDirections - turn) >= kSameDirection) continue;
-      for (std::size_t a = 0; a < scratch_.x.size(); ++a) {
-        if (scratch_.strip_of[a] != strips_) continue;
-        for (std::size_t b = 0; b < scratch_.x.size(); ++b)
-          if (scratch_.strip_of[b] == other && square_distance(a, b) < kApart * kApart)
-            return false;
-      }
+      const auto most = kApartShare * static_cast<float>(strip.cells);
+      if (static_cast<float>(cells_beside(strips_, other)) > most) return other;
     }
-    return true;
+    return strips_;
+  }
+  // Cells of a strip that are near one of another.
+  [[nodiscard]] std::int32_t cells_beside(std::int32_t strip, std::int32_t other) const {
+    std::int32_t count = 0;
+    for (std::size_t a = 0; a < scratch_.x.size(); ++a) {
+      if (scratch_.strip_of[a] != strip) continue;
+      bool near = false;
+      for (std::size_t b = 0; b < scratch_.x.size() && !near; ++b)
+        near = scratch_.strip_of[b] == other && square_distance(a, b) < kApart * kApart;
+      count += near ? 1 : 0;
+    }
+    return count;
+  }
+  // Gives the cells of the strip that was taken last to another; false: both are too wide for one.
+  bool add_to(std::int32_t strip) {
+    const auto direction = static_cast<std::size_t>(direction_of_[static_cast<std::size_t>(strip)]);
+    float right = 1e9F, left = -1e9F;
+    for (std::size_t k = 0; k < scratch_.x.size(); ++k) {
+      if (scratch_.strip_of[k] == strips_) scratch_.strip_of[k] = strip;
+      if (scratch_.strip_of[k] != strip) continue;
+      const float across =
+          scratch_.y[k] * directions_.x[direction] - scratch_.x[k] * directions_.y[direction];
+      right = std::min(right, across);
+      left = std::max(left, across);
+    }
+    return left - right <= kWidest;
   }
   [[nodiscard]] float square_distance(std::size_t a, std::size_t b) const {
     const float dx = scratch_.x[a] - scratch_.x[b], dy = scratch_.y[a] - scratch_.y[b];

@@ -223,6 +223,8 @@ void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& gr
   link_carried_things(pieces);
   link_loose_things(pieces);
   if (beams) link_continued_things(pieces, *beams);
+  pieces.measure();
+  link_abutments(pieces, linker.beams);
   find_gentle_rises(pieces);
   count_members(linker, workspace);
   number_things(params, workspace, result);

@@ -115,6 +115,14 @@ bool PassedBeams::have_passed(const Position2& at, float ground, float top) cons
   return false;
 }
 
+bool PassedBeams::between_columns(const Position2& begin, const Position2& end) const {
+  const double x = begin.x - static_cast<double>(sensor_[0]);
+  const double y = begin.y - static_cast<double>(sensor_[1]);
+  const double range = length_of(x, y);
+  return std::abs((end.x - begin.x) * y - (end.y - begin.y) * x) <
+         range * (kNoise + kColumns * range);
+}
+
 bool PassedBeams::divide(std::size_t slot_a, std::size_t slot_b) const {
   if (cells_.parts.empty()) return false;
   const std::uint16_t of_a = cells_.parts[slot_a], of_b = cells_.parts[slot_b];

@@ -21,6 +21,9 @@ class PassedBeams {
   /// \param ground, top heights in the frame of the grid, metres
   [[nodiscard]] bool have_passed(const Position2& at, float ground, float top) const;
 
+  /// Whether a gap is narrower across the beams than columns of them are apart, so that none can
+  /// have passed.
+  [[nodiscard]] bool between_columns(const Position2& begin, const Position2& end) const;
   /// Whether a beam has passed between what stands in two cells: from where the beams begin, their
   /// nearest parts with points of things are apart by more than columns of beams are, and a beam
   /// has passed in the middle. False where nothing is known of parts (FieldCells::parts).
