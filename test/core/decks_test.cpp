@@ -221,6 +221,27 @@ TEST(Decks, RangeNoiseIsNoUnevennessWhereBeamsGraze) {
   EXPECT_EQ(grass.find(), 0U);
 }
 
+TEST(Decks, WhatBeamsEnterHereAndThereIsNone) {
+  World firm(level(4.0, 4.0, 0.4)), grass = firm, hollow = firm;
+  const std::size_t n = firm.points.size();
+  const auto sink = [](World& world, std::size_t i) {
+    const PointsView& view = world.points.view();
+    world.add(view.x[i], view.y[i], view.z[i] - 0.1, 0.0);
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (firm.field.support[i] != Support::kAbove) continue;
+    const PointsView& view = firm.points.view();
+    if (i % 29 == 0) sink(grass, i);
+    // As many deep points, but together: a manhole.
+    if (std::abs(view.x[i]) < 0.4F && std::abs(view.y[i]) < 0.4F) sink(hollow, i);
+  }
+  grass.measure();
+  hollow.measure();
+  EXPECT_EQ(firm.find(), 1U);
+  EXPECT_EQ(grass.find(), 0U);
+  EXPECT_EQ(hollow.find(), 1U);
+}
+
 TEST(Decks, RubbleIsNone) {
   World world([](double x, double y) {
     const double bump = 0.03 * std::sin(31.0 * x) * std::sin(29.0 * y);

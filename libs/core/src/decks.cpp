@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "entered_decks.h"
 #include "length_of.h"
 #include "mrpt_terrain/core/beam_slope.h"
 #include "slots_around.h"
@@ -36,6 +37,8 @@ constexpr float kSlopeSide = 4.0F;
 constexpr int kWideReach = 3;
 constexpr float kEvenShare = 0.3F;
 constexpr float kWideUnevenness = 2.0F;
+// Beams that end so many times as far below a surface as points of its side begin have entered it.
+constexpr float kDeep = 2.0F;
 // Fewest cells with a plane that tell how even a deck is.
 constexpr std::size_t kFewestPlanes = 3;
 // A ramp rises by more than this over the ground, m/m.
@@ -406,7 +409,8 @@ void judge_scatter(DeckWorkspace& workspace) {
   }
 }
 
-// Drops decks whose points scatter more than those of a surface, and numbers those that are left.
+// Drops decks whose points scatter more than those of a surface, and those that beams enter, and
+// numbers those that are left.
 // Remembered points have the say only about decks of which the scan itself shows too little.
 void drop_loose_decks(const DeckSearch& search, const std::array<float, 3>& origin,
                       std::int32_t decks, FieldCells& cells) {
@@ -426,7 +430,10 @@ void drop_loose_decks(const DeckSearch& search, const std::array<float, 3>& orig
   if (!workspace.remembered.empty())
     judge([&](std::size_t slot) { return remembered_scatter_at(search, slot); });
   std::int32_t left = 0;
-  for (std::int32_t& number : workspace.deck_number) number = number > 0 ? left++ : -1;
+  for (std::size_t k = 0; k < workspace.deck_number.size(); ++k) {
+    const bool firm = workspace.deck_number[k] > 0 && !workspace.depth_of_deck[k].is_entered();
+    workspace.deck_number[k] = firm ? left++ : -1;
+  }
   for (std::int32_t& deck : cells.deck)
     if (deck >= 0) deck = workspace.deck_number[static_cast<std::size_t>(deck)];
 }
@@ -465,6 +472,8 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
     }
     mark_members(search, false);
   }
+  find_entered_decks(scan.points, point_slots, scan.origins.measured, grid, cells,
+                     kDeep * static_cast<float>(params.side), found, workspace);
   sum_surface_points(scan.points, point_slots, scan.origins.measured, cells, params, workspace);
   // A moving sensor sees a deck from nearly the same place.
   drop_loose_decks(search, scan.origins.known() ? scan.origins.of(0) : kUnknownOrigin, found,

@@ -109,6 +109,23 @@ struct DeckSide {
   }
 };
 
+/// Points of a cell of a deck, and those deep below its surface.
+struct DeckCellDepth {
+  std::int32_t points = 0, deep = 0;
+};
+
+/// Cells of a deck that are away from its edges, and those that beams enter.
+struct DeckDepth {
+  std::int32_t cells = 0, entered = 0;
+
+  /// Whether it is something that beams enter.
+  [[nodiscard]] bool is_entered() const {
+    constexpr std::int32_t kFewest = 3;
+    constexpr float kShare = 0.06F;
+    return entered >= kFewest && static_cast<float>(entered) > kShare * static_cast<float>(cells);
+  }
+};
+
 /// Scratch memory of `find_decks` and of the labels of sides.
 struct DeckWorkspace {
   CellBits candidate_cells;             ///< the cells of those slots that are `candidate`
@@ -121,6 +138,8 @@ struct DeckWorkspace {
   std::vector<float> bends, slopes;     ///< of the planes
   std::vector<HeightSums> sums;         ///< per slot: points on the surface
   std::vector<HeightSums> remembered;   ///< the same, of remembered points; empty if there are none
+  std::vector<DeckCellDepth> depth;     ///< per slot, 0 where there is no deck
+  std::vector<DeckDepth> depth_of_deck;                 ///< per deck
   std::vector<std::pair<std::int32_t, float>> scatter;  ///< per cell of a deck: deck, scatter
   std::vector<std::int32_t> deck_number;                ///< per deck: number of those kept, or -1
   std::vector<std::uint64_t> side;      ///< per slot: parts of the cell with points of a side
