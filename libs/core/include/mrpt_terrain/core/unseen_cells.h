@@ -38,8 +38,9 @@ struct UnseenWorkspace {
 /// Tells for every cell of a description of field mode why nothing is known of its ground. The
 /// field of view is told from the scan: a sector of half a degree reaches down to the lowest beam
 /// that came back within ten degrees; without any, it is out of view. Things that begin within 0.5
-/// m of the ground cast shadows as high as their tops. \param scan with the origins of its beams;
-/// where they are unknown, cells that are not seen are kNoReturn. The first origin stands for all
+/// m of the ground cast shadows as high as their tops.
+/// \param scan where the origins of its beams are unknown, cells that are not seen are kNoReturn;
+/// the first one stands for all
 /// \param reference the workspace with which `describe` has described the scan
 /// \param[out] reasons per `CellId` of the description's grid, frame included (kNoReturn there)
 void explain_unseen_cells(const ScanView& scan, const DescriptionWorkspace& reference,
