@@ -162,6 +162,17 @@ TEST(Decks, SlopesUpToTheLimitAreDecks) {
   EXPECT_EQ(above.find(params), 0U);
 }
 
+TEST(Decks, WhatHardlyRisesIsNoRamp) {
+  const auto slab = [](double slope) {
+    return [=](double x, double y) {
+      return inside(x, y, 4.6, 2.0) ? 0.2 + slope * (x + 2.3) : kNoSurface;
+    };
+  };
+  World ramp(slab(0.06)), box(slab(0.03));
+  EXPECT_EQ(ramp.find(), 1U);
+  EXPECT_EQ(box.find(), 0U);
+}
+
 TEST(Decks, ARampThatBeginsInTheAirIsNone) {
   World world([](double x, double y) {
     return inside(x, y, 3.0, 2.0) ? 0.6 + 0.2 * (x + 1.5) : kNoSurface;
