@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "line_extent.h"
 #include "slots_around.h"
 
 namespace mrpt_terrain {
 namespace {
 
 // Legs are at most so wide (centres of cells), and at most so far from what is seen of that which
-// they carry, metres; those that are nearly as high may be farther away. So may be columns of
-// points on the walls that carry a deck.
+// they carry, metres; those that are nearly as high may be farther away. A column of points on a
+// wall that carries a deck is one, too.
 constexpr float kLegWidth = 0.3F;
 constexpr double kLegReach = 0.8, kHighLegReach = 1.0;
 // Parts of what hangs, seen by a ring here and one there, are at most so far apart, metres.
@@ -174,25 +175,16 @@ class AbutmentLinker {
   // Whether both ends of one wall are opposite those of another, or one end, where the rest of the
   // shorter wall may be hidden.
   [[nodiscard]] bool are_opposite(const ThingPiece& a, const ThingPiece& b) const {
-    float begin = 1e9F, end = -1e9F, right = 1e9F, left = -1e9F;
-    for (const float along : {b.begin, b.end}) {
-      for (const float across : {b.right, b.left}) {
-        const Position2 corner = b.place(along, across);
-        const auto x = static_cast<float>(corner.x), y = static_cast<float>(corner.y);
-        begin = std::min(begin, a.along_of(x, y));
-        end = std::max(end, a.along_of(x, y));
-        right = std::min(right, a.across_of(x, y));
-        left = std::max(left, a.across_of(x, y));
-      }
-    }
-    const float span = std::max(right - a.left, a.right - left);
+    Extent of_b;
+    of_b.add(b, {a.x, a.y, a.along_x, a.along_y});
+    const float span = std::max(of_b.right - a.left, a.right - of_b.left);
     if (span < kNarrowSpan || span > kWideSpan) return false;
-    const bool begins = std::abs(begin - a.begin) <= kOpposite;
-    const bool ends = std::abs(end - a.end) <= kOpposite;
+    const bool begins = std::abs(of_b.begin - a.begin) <= kOpposite;
+    const bool ends = std::abs(of_b.end - a.end) <= kOpposite;
     if (begins && ends) return true;
-    const float across = 0.5F * (right + left), top = std::min(a.top, b.top);
-    if (begins && end < a.end) return is_hidden(a, end, a.end, across, top);
-    return ends && begin > a.begin && is_hidden(a, a.begin, begin, across, top);
+    const float across = 0.5F * (of_b.right + of_b.left), top = std::min(a.top, b.top);
+    if (begins && of_b.end < a.end) return is_hidden(a, of_b.end, a.end, across, top);
+    return ends && of_b.begin > a.begin && is_hidden(a, a.begin, of_b.begin, across, top);
   }
   // Whether no beam has passed where a wall would go on, opposite a part of another one.
   [[nodiscard]] bool is_hidden(const ThingPiece& wall, float begin, float end, float across,

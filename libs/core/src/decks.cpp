@@ -79,17 +79,8 @@ struct DeckSearch {
   }
   /// Whether ground alone is seen in one of the cells between two.
   [[nodiscard]] bool divided(CellIndex a, CellIndex b) const {
-    const int l = b.l - a.l, w = b.w - a.w, steps = std::max(std::abs(l), std::abs(w));
-    const auto part = [steps](int k, int length) {
-      return static_cast<int>(
-          std::lround(static_cast<float>(k * length) / static_cast<float>(steps)));
-    };
-    for (int k = 1; k < steps; ++k) {
-      const Slot slot = grid.slot_within({a.l + part(k, l), a.w + part(k, w)});
-      if (slot != kUnobserved && ground.rule[static_cast<std::size_t>(slot)] == GroundRule::kGround)
-        return true;
-    }
-    return false;
+    return any_slot_between(
+        grid, a, b, [this](std::size_t slot) { return ground.rule[slot] == GroundRule::kGround; });
   }
 };
 
@@ -182,7 +173,7 @@ struct LayersAround {
     }
     size = kept;
   }
-  /// About one of them; `height_of` is a member of it.
+  /// About one of them; `height`: which one of their heights.
   [[nodiscard]] HeightSums sums(const DeckLayer& at, float DeckLayer::*height) const {
     HeightSums sums;
     for (std::size_t k = 0; k < size; ++k)
@@ -201,17 +192,18 @@ bool fit_surface(const DeckSearch& search, const std::vector<DeckLayer>& layers,
   plane = {at.x, at.y, at.z, 0.0F, 0.0F, 0.0F};
   LayersAround around(search, layers, search.grid.geometry.index_of(search.grid.cell[slot]), reach);
   if (static_cast<float>(around.size) < kFewestLayers) return false;
+  float variance = 0.0F;
   const auto fit_through = [&] {
     const SumsPlane through = fit_plane(around.sums(at, &DeckLayer::z), kHold);
     plane = {at.x, at.y, at.z + through.at_centre(), through.gradient_x, through.gradient_y, 0.0F};
-    fit.bend = through.variance;
+    variance = through.variance;
   };
   fit_through();
   const LayersAround all = around;
   around.leave_out_below(plane, static_cast<float>(search.params.side));
   if (static_cast<float>(around.size) < kFewestLayers) around = all;
   if (around.size < all.size) fit_through();
-  fit.bend = std::sqrt(fit.bend);
+  fit.bend = std::sqrt(variance);
   if (!sloped) return true;
   const SumsPlane over_ground = fit_plane(around.sums(at, &DeckLayer::above), kHold);
   fit.slope = length_of(over_ground.gradient_x, over_ground.gradient_y);
@@ -409,9 +401,9 @@ void judge_scatter(DeckWorkspace& workspace) {
   }
 }
 
-// Drops decks whose points scatter more than those of a surface, and those that beams enter, and
-// numbers those that are left.
-// Remembered points have the say only about decks of which the scan itself shows too little.
+// Drops decks whose points scatter more than those of a surface, of which remembered points have a
+// say only where the scan itself shows too little, and those that beams enter; numbers those that
+// are left.
 void drop_loose_decks(const DeckSearch& search, const std::array<float, 3>& origin,
                       std::int32_t decks, FieldCells& cells) {
   DeckWorkspace& workspace = search.workspace;
@@ -431,7 +423,7 @@ void drop_loose_decks(const DeckSearch& search, const std::array<float, 3>& orig
     judge([&](std::size_t slot) { return remembered_scatter_at(search, slot); });
   std::int32_t left = 0;
   for (std::size_t k = 0; k < workspace.deck_number.size(); ++k) {
-    const bool firm = workspace.deck_number[k] > 0 && !workspace.depth_of_deck[k].is_entered();
+    const bool firm = workspace.deck_number[k] > 0 && !is_entered(workspace.depth_of_deck[k]);
     workspace.deck_number[k] = firm ? left++ : -1;
   }
   for (std::int32_t& deck : cells.deck)
@@ -472,8 +464,8 @@ void find_decks(const ScanView& scan, const FieldPoints& points, const PointSlot
     }
     mark_members(search, false);
   }
-  find_entered_decks(scan.points, point_slots, scan.origins.measured, grid, cells,
-                     kDeep * static_cast<float>(params.side), found, workspace);
+  measure_deck_depths(scan.points, point_slots, scan.origins.measured, grid, cells,
+                      kDeep * static_cast<float>(params.side), found, workspace);
   sum_surface_points(scan.points, point_slots, scan.origins.measured, cells, params, workspace);
   // A moving sensor sees a deck from nearly the same place.
   drop_loose_decks(search, scan.origins.known() ? scan.origins.of(0) : kUnknownOrigin, found,

@@ -16,6 +16,9 @@ constexpr int kFewestAround = 18;
 constexpr std::int32_t kFewestPoints = 4;
 // Where more than one in so many points are deep, they are of a side or of a hole.
 constexpr std::int32_t kOneDeepIn = 5;
+// Beams enter a deck where they enter so many of its cells, and more than this share.
+constexpr std::int32_t kFewestEntered = 3;
+constexpr float kEnteredShare = 0.06F;
 
 // Whether a cell of a deck is away from its edges.
 bool is_inside(const ElevationGrid& grid, const std::vector<std::int32_t>& deck, std::size_t slot) {
@@ -26,8 +29,8 @@ bool is_inside(const ElevationGrid& grid, const std::vector<std::int32_t>& deck,
 }
 
 // Counts the points of every cell of a deck, and the deep ones.
-void measure_depths(const PointsView& scan, const PointSlots& point_slots, std::size_t measured,
-                    const FieldCells& cells, float deep, DeckWorkspace& workspace) {
+void count_points(const PointsView& scan, const PointSlots& point_slots, std::size_t measured,
+                  const FieldCells& cells, float deep, DeckWorkspace& workspace) {
   workspace.depth.assign(cells.size(), {});
   for (const std::int32_t point : workspace.points) {
     const auto i = static_cast<std::size_t>(point);
@@ -41,12 +44,17 @@ void measure_depths(const PointsView& scan, const PointSlots& point_slots, std::
 
 }  // namespace
 
-void find_entered_decks(const PointsView& scan, const PointSlots& point_slots, std::size_t measured,
-                        const ElevationGrid& grid, const FieldCells& cells, float deep,
-                        std::int32_t decks, DeckWorkspace& workspace) {
+bool is_entered(const DeckDepth& deck) {
+  return deck.entered >= kFewestEntered &&
+         static_cast<float>(deck.entered) > kEnteredShare * static_cast<float>(deck.cells);
+}
+
+void measure_deck_depths(const PointsView& scan, const PointSlots& point_slots,
+                         std::size_t measured, const ElevationGrid& grid, const FieldCells& cells,
+                         float deep, std::int32_t decks, DeckWorkspace& workspace) {
   workspace.depth_of_deck.assign(static_cast<std::size_t>(decks), {});
   if (decks == 0) return;
-  measure_depths(scan, point_slots, measured, cells, deep, workspace);
+  count_points(scan, point_slots, measured, cells, deep, workspace);
   for (std::size_t slot = 0; slot < cells.size(); ++slot) {
     const DeckCellDepth& cell = workspace.depth[slot];
     if (cell.points < kFewestPoints || !is_inside(grid, cells.deck, slot)) continue;

@@ -82,8 +82,7 @@ void measure_field_cells(const FieldWorkspace& workspace, const ElevationGrid& g
   count_points(workspace.points, point_slots, cells);
   ground.rule.resize(grid.observed());
   ground.h_mean.resize(grid.observed());
-  const SquareLattice& lattice = workspace.surface.lattice();
-  const LevelView reference{workspace.surface.node.data(), lattice.side, lattice.cell_size};
+  const LevelView reference = view_of(workspace.surface);
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
     const Position2 centre = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[slot]));
     cells.ground[slot] =

@@ -11,6 +11,7 @@
 #include "gentle_rises.h"
 #include "length_of.h"
 #include "loose_things.h"
+#include "slots_around.h"
 #include "standing_things.h"
 #include "thing_pieces.h"
 
@@ -121,15 +122,8 @@ class UnseenLinker {
   }
   // Whether no cell between the two was observed but for cells of things.
   [[nodiscard]] bool is_unseen(CellIndex a, CellIndex b) const {
-    const int steps = std::max(std::abs(a.l - b.l), std::abs(a.w - b.w));
-    for (int k = 1; k < steps; ++k) {
-      const double share = static_cast<double>(k) / steps;
-      const CellIndex at{a.l + static_cast<int>(std::lround(share * (b.l - a.l))),
-                         a.w + static_cast<int>(std::lround(share * (b.w - a.w)))};
-      const Slot slot = linker_.grid.slot_at(at);
-      if (slot != kUnobserved && !linker_.is_member(static_cast<std::size_t>(slot))) return false;
-    }
-    return true;
+    return !any_slot_between(linker_.grid, a, b,
+                             [this](std::size_t slot) { return !linker_.is_member(slot); });
   }
 
   const Linker& linker_;

@@ -167,7 +167,7 @@ void measure_heights(const CellPoint* points, std::size_t n, const LevelView lev
 void measure_heights(GroundSurface& surface) {
   const CellPoints& cells = surface.cells;
   const std::size_t n = cells.points.size();
-  const LevelView finest{surface.node.data(), cells.lattice.side, cells.lattice.cell_size};
+  const LevelView finest = view_of(surface);
   surface.height.resize(n);
   for (std::size_t first = 0; first < n; first += kTogether) {
     measure_heights(cells.points.data() + first, std::min(kTogether, n - first), finest,
@@ -177,9 +177,7 @@ void measure_heights(GroundSurface& surface) {
 
 }  // namespace
 
-float GroundSurface::height_at(float x, float y) const {
-  return LevelView{node.data(), lattice().side, lattice().cell_size}.at(x, y).height;
-}
+float GroundSurface::height_at(float x, float y) const { return view_of(*this).at(x, y).height; }
 
 void find_ground_surface(const ScanView& scan, const GroundSurfaceParams& params,
                          GroundSurfaceWorkspace& workspace, GroundSurface& result) {

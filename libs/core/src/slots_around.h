@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdlib>
 
 #include "mrpt_terrain/core/elevation_grid.h"
 
@@ -33,6 +35,20 @@ void for_slots_around(const ElevationGrid& grid, CellIndex at, int reach, F&& f)
 template <class F>
 void for_slots_around(const ElevationGrid& grid, std::size_t slot, int reach, F&& f) {
   for_slots_around(grid, grid.geometry.index_of(grid.cell[slot]), reach, f);
+}
+
+/// Whether one of the observed slots on the line between two cells is such a one; theirs do not
+/// count.
+template <class Predicate>
+bool any_slot_between(const ElevationGrid& grid, CellIndex a, CellIndex b, Predicate&& is_such) {
+  const int steps = std::max(std::abs(a.l - b.l), std::abs(a.w - b.w));
+  for (int k = 1; k < steps; ++k) {
+    const double share = static_cast<double>(k) / steps;
+    const Slot slot = grid.slot_within({a.l + static_cast<int>(std::lround(share * (b.l - a.l))),
+                                        a.w + static_cast<int>(std::lround(share * (b.w - a.w)))});
+    if (slot != kUnobserved && is_such(static_cast<std::size_t>(slot))) return true;
+  }
+  return false;
 }
 
 }  // namespace mrpt_terrain

@@ -60,6 +60,11 @@ struct LevelView {
 [[nodiscard]] LevelView view_of_level(const GroundSurfaceWorkspace& workspace,
                                       const SquareLattice& lattice, int level);
 
+/// The finest level, which is the reference.
+[[nodiscard]] inline LevelView view_of(const GroundSurface& surface) {
+  return {surface.node.data(), surface.lattice().side, surface.lattice().cell_size};
+}
+
 /// Where the centres of all rows, and so columns, of the finest level lie in the level `level`.
 void find_steps(const LevelView& view, const SquareLattice& lattice, int level,
                 std::vector<LevelStep>& step);

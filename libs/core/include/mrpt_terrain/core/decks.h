@@ -117,13 +117,6 @@ struct DeckCellDepth {
 /// Cells of a deck that are away from its edges, and those that beams enter.
 struct DeckDepth {
   std::int32_t cells = 0, entered = 0;
-
-  /// Whether it is something that beams enter.
-  [[nodiscard]] bool is_entered() const {
-    constexpr std::int32_t kFewest = 3;
-    constexpr float kShare = 0.06F;
-    return entered >= kFewest && static_cast<float>(entered) > kShare * static_cast<float>(cells);
-  }
 };
 
 /// Scratch memory of `find_decks` and of the labels of sides.
