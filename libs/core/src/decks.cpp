@@ -45,14 +45,12 @@ constexpr std::size_t kFewestPlanes = 3;
 constexpr float kLeastSlope = 0.04F;
 // Fewest points of a surface around a cell.
 constexpr float kFewestPoints = 8.0F;
-// Sine of the angle at which beams meet a plane along which they run, over that of a level one,
-// which counts up to kSteep.
-constexpr float kGrazing = 0.3F;
-constexpr float kSteep = 0.3F;
-// The same for remembered points, as if they had been seen from 5 m by a sensor 0.8 m high.
+// Holds the inclination of a surface to level where a single ring is seen, m^2.
+constexpr float kInclinationHold = 0.02F;
+// Beams meet no surface at a flatter angle than of this sine: errors of the plane would have a say.
+constexpr float kLeastSine = 0.02F;
+// Sine for remembered points, as if they had been seen from 5 m by a sensor 0.8 m high.
 constexpr float kUnknownSine = 0.16F;
-// Scatter where that is so: more than any surface's.
-constexpr float kLoose = 9.0F;
 // Where the beams start if that is not known: the sensor of a small robot.
 constexpr std::array<float, 3> kUnknownOrigin{0.0F, 0.0F, 1.0F};
 
@@ -352,15 +350,14 @@ HeightSums sums_around(const DeckSearch& search, const std::vector<HeightSums>& 
   return sums;
 }
 
-// How much the points on the surface around a cell scatter about their plane, over what range noise
-// and a smooth surface explain; negative if there are too few. Noise along the beams is little
-// across a surface that they meet at a grazing angle. Where the plane runs along the beams, the
-// points are those of one ring that enters something loose, such as grass.
+// How much the points on the surface around a cell scatter along the beams, over what range noise
+// and a smooth surface that is grazed by them explain; negative if there are too few. Of one ring
+// alone, too: where it enters something loose, such as grass, it is no line.
 float scatter_at(const DeckSearch& search, const std::array<float, 3>& origin, std::size_t slot) {
   const DeckPlane& at = search.cells.deck_plane[slot];
   const HeightSums sums = sums_around(search, search.workspace.sums, slot);
   if (sums.n() < kFewestPoints) return -1.0F;
-  const SumsPlane plane = fit_plane(sums, kHold);
+  const SumsPlane plane = fit_plane(sums, kInclinationHold);
   const float x = at.x + plane.mean_x - origin[0];
   const float y = at.y + plane.mean_y - origin[1];
   const float z = at.height + plane.mean_z - origin[2];
@@ -368,10 +365,13 @@ float scatter_at(const DeckSearch& search, const std::array<float, 3>& origin, s
   const float length =
       std::sqrt(1.0F + plane.gradient_x * plane.gradient_x + plane.gradient_y * plane.gradient_y);
   const float sine = std::abs(plane.gradient_x * x + plane.gradient_y * y - z) / (range * length);
-  if (sine < kGrazing * std::min(std::abs(z) / range, kSteep)) return kLoose;
-  const float noise = sine * static_cast<float>(search.params.beam_sigma);
-  const auto surface = static_cast<float>(search.params.surface_sigma);
-  return std::sqrt(plane.variance / (noise * noise + surface * surface)) / length;
+  const auto noise = static_cast<float>(search.params.beam_sigma);
+  const float surface =
+      static_cast<float>(search.params.surface_sigma) / std::max(sine, kLeastSine);
+  const HeightMoments moments(sums);
+  const float along =
+      variance_along(moments.variances, moments.covariances, {x / range, y / range, z / range});
+  return std::sqrt(along / (noise * noise + surface * surface));
 }
 
 // The same for remembered points, of which it is not known from where they were seen.

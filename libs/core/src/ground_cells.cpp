@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <limits>
@@ -19,9 +20,13 @@ constexpr float kHighPart = 2.0F;
 constexpr float kHighPointWeight = 3.0F;
 // Mean weight of the cells around, where what is rough is the ground, and where it stands on it.
 constexpr float kRoughAround = 0.2F, kSmoothAround = 0.4F;
-// Among smooth cells, one that is less firm than this is loose: it scatters by 3.6 cm along the
-// beams, which is more than range noise.
+// Among smooth cells, one that is less firm or solid than this is loose: it scatters by 3.6 cm
+// along the beams, which is more than range noise.
 constexpr float kLoose = 0.6F;
+// What cells around add to the scatter of a cell, and degrees of freedom with which its own points
+// are enough to tell that it scatters less; two of them go to where its surface lies.
+constexpr float kScatterAround = 0.3F;
+constexpr float kEnoughFreedoms = 6.0F, kFreedomsOfSurface = 2.0F;
 // Rise of what is not loose, metres: the level's own tolerance has the say.
 constexpr float kAnyRise = 1e9F;
 // Beams that meet the ground at a flatter angle count as if it were this sine: errors of a cell's
@@ -80,13 +85,14 @@ FourFloats place_of(const CellPoint& point) {
   return place;
 }
 
-// The low band of a cell, and the sums of its points up to `low_part` above the lowest.
+// The low band of a cell, and the sums of its points up to `low_part` above the lowest, about the
+// middle of the cell at the height of the lowest.
 LowBand measure_points(const PointsOfCell& cell, float band, float low_part, HeightSums& sums) {
   float lowest = std::numeric_limits<float>::max();
   for (const CellPoint* p = cell.first; p != cell.last; ++p) lowest = std::min(lowest, p->z);
   BandCounts counts{band};
   sums = {};
-  const FourFloats centre{cell.centre_x, cell.centre_y, 0.0F, 0.0F};
+  const FourFloats centre{cell.centre_x, cell.centre_y, lowest, 0.0F};
   const float top = lowest + low_part;
   for (const CellPoint* p = cell.first; p != cell.last; ++p) {
     counts.add(p->z - lowest);
@@ -125,24 +131,61 @@ float variance_across(const HeightSums& s) {
 }
 
 // Points of the nine cells about a slot, heights from its own mean.
-HeightSums sums_around(const CellPoints& cells, const std::vector<HeightSums>& sums,
+HeightSums sums_around(const CellPoints& cells, const GroundSurfaceWorkspace& workspace,
                        std::size_t slot) {
-  const float z = sums[slot].sum[2] / sums[slot].n();
+  const std::vector<HeightSums>& sums = workspace.sums;
+  const std::vector<float>& lowest = workspace.lowest;
+  const float z = lowest[slot] + sums[slot].sum[2] / sums[slot].n();
   const float size = cells.lattice.cell_size;
   HeightSums around;
   for_nine_cells(cells, slot, [&](std::int32_t row, std::int32_t column, std::size_t other) {
     around.add_shifted(sums[other], static_cast<float>(row) * size,
-                       static_cast<float>(column) * size, -z);
+                       static_cast<float>(column) * size, lowest[other] - z);
   });
   return around;
 }
 
 float squared(float value) { return value * value; }
 
-// Squared sine of the angle between the beam to the middle of a cell and the plane of the points.
-float squared_sine(const BeamOrigins& origins, const GroundSurface& surface, std::size_t slot,
-                   const HeightSums& around) {
-  constexpr float kHold = 0.001F;  // m^2
+// Scatter of at least one point about the mean of all.
+CellScatter scatter_of(const HeightSums& s) {
+  const FourFloats mean = s.sum / s.n();
+  CellScatter scatter{s.squares - s.sum * mean,
+                      s.products - first_factors(s.sum) * second_factors(mean)};
+  scatter.squares[3] = s.n() - 1.0F;
+  return scatter;
+}
+
+// Variance along a beam, of the points of a cell and, less, those of the cells around, each about
+// the mean of its own cell: what lies at other heights or ranges is no scatter. Where the cell's
+// own points are enough and scatter less, it is next to something else.
+float variance_along_beam(const GroundSurface& surface, const std::vector<CellScatter>& scatter,
+                          std::size_t slot, const std::array<float, 3>& beam) {
+  const CellScatter& own = scatter[slot];
+  CellScatter all{(1.0F - kScatterAround) * own.squares, (1.0F - kScatterAround) * own.products};
+  for_nine_cells(surface.cells, slot, [&](std::int32_t, std::int32_t, std::size_t other) {
+    all.squares += kScatterAround * scatter[other].squares;
+    all.products += kScatterAround * scatter[other].products;
+  });
+  const auto along = [&beam](const CellScatter& s, float freedoms) {
+    return variance_along(s.squares / freedoms, s.products / freedoms, beam);
+  };
+  if (all.freedoms() <= 0.0F) return 0.0F;
+  const float variance = along(all, all.freedoms());
+  if (own.freedoms() < kEnoughFreedoms) return variance;
+  return std::min(variance, along(own, own.freedoms() - kFreedomsOfSurface));
+}
+
+/// How beams meet the ground in a cell.
+struct Incidence {
+  std::array<float, 3> beam;  ///< to the sensor, of length 1
+  float squared_sine;         ///< of the angle between beam and ground
+};
+
+Incidence incidence_of(const BeamOrigins& origins, const GroundSurface& surface, std::size_t slot,
+                       const HeightSums& around) {
+  constexpr float kHold = 0.02F;     // m^2: a ring alone does not tell how the ground is inclined
+  constexpr float kNearest = 1e-6F;  // m^2
   const CellPoints& cells = surface.cells;
   std::array<float, 3> sensor{0.0F, 0.0F, kSensorHeight};
   if (origins.known()) {
@@ -155,7 +198,10 @@ float squared_sine(const BeamOrigins& origins, const GroundSurface& surface, std
   const SumsPlane plane = fit_plane(around, kHold);
   const float across = dz - plane.gradient_x * dx - plane.gradient_y * dy;
   const float squared_length = 1.0F + squared(plane.gradient_x) + squared(plane.gradient_y);
-  return squared(across) / (squared_length * (squared(dx) + squared(dy) + squared(dz)));
+  const float squared_range = std::max(squared(dx) + squared(dy) + squared(dz), kNearest);
+  const float scale = 1.0F / std::sqrt(squared_range);
+  return {{dx * scale, dy * scale, dz * scale},
+          std::max(squared(across) / (squared_length * squared_range), squared(kLeastSine))};
 }
 
 float smoothness(float variance, float at_half) {
@@ -167,12 +213,18 @@ void measure_smoothness(const BeamOrigins& origins, const GroundSurfaceParams& p
   const float rough = squared(static_cast<float>(params.smooth_sigma));
   const float firm = squared(static_cast<float>(params.firm_sigma));
   const float along_beam = squared(static_cast<float>(params.beam_sigma));
+  const float grazed = squared(static_cast<float>(params.grazed_sigma));
+  for (std::size_t slot = 0; slot < surface.ground.size(); ++slot)
+    workspace.scatter[slot] = scatter_of(workspace.sums[slot]);
   for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
-    const HeightSums around = sums_around(surface.cells, workspace.sums, slot);
+    const HeightSums around = sums_around(surface.cells, workspace, slot);
     const float variance = variance_across(around);
-    const float sine2 = std::max(squared_sine(origins, surface, slot, around), squared(kLeastSine));
+    const Incidence at = incidence_of(origins, surface, slot, around);
+    const float along = variance_along_beam(surface, workspace.scatter, slot, at.beam);
     workspace.even[slot] = smoothness(variance, rough);
-    workspace.firm[slot] = smoothness(variance, std::min(rough, firm + along_beam * sine2));
+    workspace.firm[slot] =
+        smoothness(variance, std::min(rough, firm + along_beam * at.squared_sine));
+    workspace.solid[slot] = smoothness(along, along_beam + grazed / at.squared_sine);
   }
 }
 
@@ -227,8 +279,9 @@ void weigh_against_surroundings(const GroundSurfaceParams& params, Levels levels
         std::clamp((around - kRoughAround) / (kSmoothAround - kRoughAround), 0.0F, 1.0F);
     const float even = workspace.even[slot];
     ground.smooth = even + among_smooth * (workspace.firm[slot] - even);
-    const bool loose = among_smooth > 0.5F && ground.smooth < kLoose;
-    ground.most_rise = loose ? loose_rise : kAnyRise;
+    const float solid = std::min(workspace.solid[slot] / kLoose, 1.0F);
+    const bool loose = among_smooth > 0.5F && std::min(ground.smooth / kLoose, solid) < 1.0F;
+    ground.most_rise = loose ? loose_rise * solid : kAnyRise;
     // Coarse levels bridge what is loose; on the fine ones it is out of their tolerance.
     const float smooth = levels == Levels::kCoarse ? ground.smooth : even;
     const float weight = squared(workspace.part[slot]) * smooth;
@@ -249,15 +302,21 @@ void measure_ground_cells(const BeamOrigins& origins, const GroundSurfaceParams&
                           GroundSurfaceWorkspace& workspace, GroundSurface& surface) {
   const CellPoints& cells = surface.cells;
   surface.ground.resize(cells.occupied());
-  workspace.sums.resize(cells.occupied() + 1);
-  workspace.sums.back() = {};  // of empty cells
-  for (auto* values : {&workspace.part, &workspace.even, &workspace.firm})
+  for (auto* values : {&workspace.part, &workspace.even, &workspace.firm, &workspace.solid})
     values->resize(cells.occupied());
+  // The last entries are those of empty cells.
+  workspace.lowest.resize(cells.occupied() + 1);
+  workspace.sums.resize(cells.occupied() + 1);
+  workspace.scatter.resize(cells.occupied() + 1);
+  workspace.lowest.back() = 0.0F;
+  workspace.sums.back() = {};
+  workspace.scatter.back() = {};
   const auto low_band = static_cast<float>(params.low_band);
   const auto low_part = static_cast<float>(params.low_part);
   for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
     const LowBand band =
         measure_points(points_in(cells, slot), low_band, low_part, workspace.sums[slot]);
+    workspace.lowest[slot] = band.lowest;
     workspace.part[slot] = band.share;
     surface.ground[slot].low = band.mean;
     surface.ground[slot].points = band.points;

@@ -21,7 +21,7 @@ struct DeckParams {
   double side = 0.025;           ///< metres: points this far below a level deck are of its side
   double unevenness = 0.008;     ///< metres: median RMS of the heights of nine cells about a plane
   double beam_sigma = 0.035;     ///< metres along the beam...
-  double surface_sigma = 0.004;  ///< ...and across the surface: scatter of points on it
+  double surface_sigma = 0.002;  ///< ...and across the surface: scatter of points on it
   double foot = 0.25;            ///< metres: a ramp begins below this height above the ground
   double least_rise = 0.1;       ///< metres: and rises by this much
   double curb_height = 0.25;     ///< metres: lower decks may be stepped onto...

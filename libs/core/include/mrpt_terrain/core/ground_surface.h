@@ -33,6 +33,7 @@ struct GroundSurfaceParams {
   double smooth_sigma = 0.035;  ///< roughness at which a cell counts half
   double firm_sigma = 0.005;    ///< the same among smooth ones, of surfaces that beams graze...
   double beam_sigma = 0.04;     ///< ...and of noise along the beams: what they enter has more
+  double grazed_sigma = 0.0025;  ///< roughness of ground, seen along beams that graze it
   double rough_weight = 0.8;    ///< how little rough cells count between smooth ones
   double loose_rise = 0.08;     ///< what scatters along beams, among what does not, rises by less
   double hold = 1.0;            ///< weight of the coarser level, in cells
@@ -69,6 +70,9 @@ struct GroundSurfaceParams {
                                      "the same among smooth cells, where beams graze the ground"});
     visit(self.beam_sigma, ParamInfo{"beam_sigma", "", "m", 0.001, 10.0,
                                      "and this much more along the beams: grass has more"});
+    visit(self.grazed_sigma, ParamInfo{"grazed_sigma", "", "m", 0.0, 1.0,
+                                       "across the ground, over the sine of the angle at which "
+                                       "beams meet it, what it scatters them by"});
     visit(self.rough_weight,
           ParamInfo{"rough_weight", "", "", 0.0, 100.0,
                     "how little rough cells count between smooth ones; 0: as much as smooth ones"});
@@ -138,11 +142,21 @@ struct LevelStep {
   float share;
 };
 
+/// Scatter of the points of a cell about their mean.
+struct CellScatter {
+  FourFloats squares{};   ///< sums of xx, yy and zz; degrees of freedom
+  FourFloats products{};  ///< sums of xy, xz and yz; the fourth means nothing
+
+  [[nodiscard]] float freedoms() const { return squares[3]; }
+};
+
 /// Scratch memory of `find_ground_surface`.
 struct GroundSurfaceWorkspace {
   CellPointsWorkspace sort;
-  std::vector<HeightSums> sums;  ///< per slot: low points, about the cell's centre in x and y
-  std::vector<float> part;       ///< per slot: share of the low band
+  std::vector<HeightSums> sums;  ///< per slot: low points, about the cell's centre and the lowest
+  std::vector<CellScatter> scatter;       ///< per slot: the same points
+  std::vector<float> lowest;              ///< per slot: height of the lowest point
+  std::vector<float> part;                ///< per slot: share of the low band
   std::vector<std::uint8_t> beside_tall;  ///< per slot: 1 where something tall stands nearby
   std::vector<std::uint8_t> in_ditch;     ///< per slot: 1 in a ditch, which levels do not follow
   std::vector<float> above_plane;         ///< per slot: low height above the plane
@@ -150,7 +164,8 @@ struct GroundSurfaceWorkspace {
   std::vector<float> block_sides;         ///< per block: how high the sides of a ditch may be
   std::vector<std::uint64_t> layers, layers_in_row;  ///< per block of cells: a bit per height
   std::vector<float> even;                           ///< per slot: smoothness by roughness alone
-  std::vector<float> firm;  ///< per slot: smoothness by scatter along the beams
+  std::vector<float> firm;   ///< per slot: smoothness by scatter across the surface
+  std::vector<float> solid;  ///< per slot: smoothness by scatter along the beams
   std::array<std::vector<float>, kSurfaceLevels> level;  ///< heights at the centres of cells
   std::vector<LevelStep> step;                           ///< per row, or column, of the lattice
   HeardCells heard;

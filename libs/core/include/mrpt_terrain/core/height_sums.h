@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
 namespace mrpt_terrain {
 
@@ -84,6 +85,26 @@ struct SumsPlane {
   const float variance =
       zz - 2.0F * (gx * xz + gy * yz) + gx * gx * xx + 2.0F * gx * gy * xy + gy * gy * yy;
   return {x, y, z, gx, gy, std::max(variance, 0.0F)};
+}
+
+/// Variance along a direction that is left where the coordinates across it have explained what they
+/// can: 1 / (b' C^-1 b), C the covariance. Zero for points of a plane or of a line, whatever way it
+/// runs, but for a direction in it; that of the noise for points of a volume. So beams that end at
+/// a surface leave their range noise along them, even where one ring alone is seen, and beams that
+/// go on into grass leave how far they go. \param v,c variances and covariances as in
+/// `HeightMoments`, m^2 \param b direction, of length 1
+[[nodiscard]] inline float variance_along(const FourFloats& v, const FourFloats& c,
+                                          const std::array<float, 3>& b) {
+  constexpr float kNoise = 1e-5F;  // m^2: gives planes and lines a volume
+  const FourFloats d = v + kNoise;
+  const float xx = d[1] * d[2] - c[2] * c[2], yy = d[0] * d[2] - c[1] * c[1];
+  const float zz = d[0] * d[1] - c[0] * c[0];
+  const float xy = c[1] * c[2] - c[0] * d[2], xz = c[0] * c[2] - c[1] * d[1];
+  const float yz = c[0] * c[1] - c[2] * d[0];
+  const float determinant = d[0] * xx + c[0] * xy + c[1] * xz;
+  const float across = b[0] * b[0] * xx + b[1] * b[1] * yy + b[2] * b[2] * zz +
+                       2.0F * (b[0] * b[1] * xy + b[0] * b[2] * xz + b[1] * b[2] * yz);
+  return across > 0.0F ? std::max(determinant, 0.0F) / across : 0.0F;
 }
 
 }  // namespace mrpt_terrain
