@@ -24,6 +24,8 @@ constexpr double kOutlier = 2.5;  // standard deviations
 constexpr double kLeastBand = 0.015;  // metres
 // A few things that stand there are part of the rim up to this many times the band.
 constexpr double kUpperBand = 3.0;
+// Points count half at this distance from the hole, metres.
+constexpr double kHalfWeight = 0.2;
 // Weight of "no bending", in points times m^4: within half a metre, a hundred points outweigh it.
 constexpr double kHold = 30.0;
 
@@ -259,25 +261,49 @@ RimSpread spread_of(const RimSurface& rim, double height, double band, int terms
 struct PlaceSums {
   double x = 0.0, y = 0.0, z = 0.0, n = 0.0;
 
-  void add(const HolePoint& p) {
-    x += p.x;
-    y += p.y;
-    z += p.z;
+  void add(double px, double py, double pz) {
+    x += px;
+    y += py;
+    z += pz;
     n += 1.0;
   }
 };
 
 // Takes the points around in the frame of the scan. Those in cells away from the hole count.
-void take_around(const std::vector<HolePoint>& points, RimPoints& around, PlaceSums& all,
-                 PlaceSums& away) {
+// \return sums over these
+PlaceSums take_around(const std::vector<HolePoint>& points, RimPoints& around) {
   around.reserve((points.size() + kCellLanes - 1) / kCellLanes * kCellLanes);
   around.size = 0;
+  PlaceSums away;
   for (const HolePoint& p : points) {
     if (!is_around(p)) continue;
     const bool is_away = p.zone == HoleZone::kRim;
-    around.add(p.x, p.y, p.z, p.weight, is_away);
-    all.add(p);
-    if (is_away) away.add(p);
+    around.add(p.x, p.y, p.z, is_away ? 1.0 : 0.0);
+    if (is_away) away.add(p.x, p.y, p.z);
+  }
+  return away;
+}
+
+PlaceSums sum_all(const RimPoints& points) {
+  PlaceSums sums;
+  for (std::size_t i = 0; i < points.size; ++i) sums.add(points.u[i], points.v[i], points.z[i]);
+  return sums;
+}
+
+// The nearer to the hole, the more a point counts.
+MRPT_TERRAIN_WIDE_REGISTERS
+void weigh_points(const RimArea& area, RimPoints& points) {
+  const Position2 low = area.low, high = area.high;
+  const double margin = area.margin;
+  const double *u = points.u.data(), *v = points.v.data();
+  double *weight = points.weight.data(), *counted = points.counted.data();
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const double dx = std::max(std::max(low.x - margin - u[i], u[i] - high.x - margin), 0.0);
+    const double dy = std::max(std::max(low.y - margin - v[i], v[i] - high.y - margin), 0.0);
+    const auto w =
+        static_cast<float>(1.0 / (1.0 + (dx * dx + dy * dy) / (kHalfWeight * kHalfWeight)));
+    weight[i] = static_cast<double>(w);
+    counted[i] *= weight[i];
   }
 }
 
@@ -296,11 +322,12 @@ void move_to_origin(const RimSurface& rim, RimPoints& points) {
 // Takes the points around, about their mean, which becomes the origin of the surface, and some of
 // no weight for the lanes that are left over. In the first round those in cells away from the hole
 // count, or all if there are few.
-void start(const std::vector<HolePoint>& points, RimPoints& around, RimSurface& rim) {
-  PlaceSums all, away;
-  take_around(points, around, all, away);
+void start(const std::vector<HolePoint>& points, const RimArea& area, RimPoints& around,
+           RimSurface& rim) {
+  const PlaceSums away = take_around(points, around);
+  weigh_points(area, around);
   const bool enough = away.n >= kFewestRimPoints;
-  const PlaceSums& mean = enough ? away : all;
+  const PlaceSums mean = enough ? away : sum_all(around);
   const double share = 1.0 / std::max(mean.n, 1.0);
   rim = {};
   rim.x = mean.x * share;
@@ -308,7 +335,10 @@ void start(const std::vector<HolePoint>& points, RimPoints& around, RimSurface& 
   rim.z = mean.z * share;
   if (!enough) around.counted = around.weight;
   move_to_origin(rim, around);
-  while (around.size % kCellLanes != 0) around.add(0.0, 0.0, 0.0, 0.0, false);
+  while (around.size % kCellLanes != 0) {
+    around.weight[around.size] = 0.0;
+    around.add(0.0, 0.0, 0.0, 0.0);
+  }
 }
 
 bool same(const RimSurface& a, const RimSurface& b) {
@@ -318,9 +348,9 @@ bool same(const RimSurface& a, const RimSurface& b) {
 
 }  // namespace
 
-bool fit_rim(const std::vector<HolePoint>& points, double low, bool from_above, RimPoints& scratch,
-             RimSurface& rim) {
-  start(points, scratch, rim);
+bool fit_rim(const std::vector<HolePoint>& points, const RimArea& area, double low, bool from_above,
+             RimPoints& scratch, RimSurface& rim) {
+  start(points, area, scratch, rim);
   double band = low, height = 0.0;
   for (int round = 0; round < kRounds; ++round) {
     const bool plane = round < kPlaneRounds;
