@@ -47,6 +47,7 @@ TEST(CellBits, FindsTheCellsThatALookAtEveryCellFinds) {
         bits.unmark(cell);
       }
       marked[place(cell)] = mark;
+      EXPECT_EQ(bits.is_marked(cell), mark);
       const int reach = static_cast<int>(random.below(trial % 10 == 0 ? 150 : 5));
       Cells expected;
       for (int l = 0; l < 20; ++l) {

@@ -38,7 +38,8 @@ class WrittenPoints {
     ElevationGridWorkspace workspace;
     build_elevation_grid(points.view(), {4.0, 4.0, 1.0, 3.0}, workspace, stages.grid,
                          stages.point_slots, heights_.data());
-    measure_field_cells(stages.field, stages.grid, stages.point_slots, stages.cells, stages.ground);
+    measure_field_cells(points.view(), stages.field, stages.grid, stages.point_slots, stages.cells,
+                        stages.ground);
     return stages;
   }
 

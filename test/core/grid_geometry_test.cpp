@@ -7,6 +7,8 @@
 #include <limits>
 #include <set>
 
+#include "mrpt_terrain/core/random.h"
+
 namespace mrpt_terrain {
 namespace {
 
@@ -160,6 +162,28 @@ TEST(GridGeometry, NeighboursOfTheBorderAreCellsOfTheFrame) {
   for (int l = 0; l < 5; ++l) {
     EXPECT_EQ(cells.count(value_of(geometry.id_of({l, 0})) - 1), 0U);
     EXPECT_EQ(cells.count(value_of(geometry.id_of({l, 3})) + 1), 0U);
+  }
+}
+
+TEST(Divisor, DividesExactly) {
+  constexpr std::int32_t kMost = 2147483647;
+  RandomGenerator random(3);
+  for (const std::int32_t divisor : {1, 2, 3, 5, 7, 502, 4096, 46341, 65537, 1000003, kMost}) {
+    const Divisor by(divisor);
+    const auto expect_exact = [&](std::int32_t number) {
+      EXPECT_EQ(by.quotient_of(number), number / divisor) << number << " / " << divisor;
+    };
+    for (const std::int32_t number : {0, 1, divisor - 1, divisor, kMost - 1, kMost})
+      expect_exact(number);
+    // Multiples and what is just below them.
+    for (int trial = 0; trial < 1000; ++trial) {
+      const std::int32_t multiple =
+          divisor *
+          static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(kMost / divisor) + 1U));
+      expect_exact(multiple);
+      if (multiple > 0) expect_exact(multiple - 1);
+      expect_exact(static_cast<std::int32_t>(random.below(kMost)));
+    }
   }
 }
 

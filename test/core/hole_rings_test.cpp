@@ -32,8 +32,8 @@ std::vector<HolePoint> points_of(int count, const std::function<double(int, int)
       const HoleZone zone = depth > 0.5 * kDepth ? HoleZone::kFloor : HoleZone::kRim;
       points.push_back({static_cast<float>(range * std::cos(azimuth)),
                         static_cast<float>(range * std::sin(azimuth)), static_cast<float>(-depth),
-                        static_cast<std::int32_t>(points.size()), 0, 1.0F,
-                        static_cast<float>(depth), zone});
+                        static_cast<std::int32_t>(points.size()), 0, static_cast<float>(depth),
+                        zone});
     }
   }
   return points;
@@ -152,6 +152,9 @@ TEST(HoleRings, NoiseIsToldFromNeighbours) {
   EXPECT_NEAR(evidence_of(points).noise, 0.01, 0.002);
 }
 
+// All points count the same.
+constexpr RimArea kEverywhere{{-1000.0, -1000.0}, {1000.0, 1000.0}, 0.0};
+
 // A plane with a third of its points 0.1 m lower: those do not count.
 TEST(HoleRim, LowPointsDoNotCount) {
   RandomGenerator random(302);
@@ -162,15 +165,32 @@ TEST(HoleRim, LowPointsDoNotCount) {
     const double z =
         0.1 * x - 0.05 * y + 0.3 + 0.005 * worlds::normal_deviate(random) - (low ? 0.1 : 0.0);
     points.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), k, 0,
-                      1.0F, 0.0F, low ? HoleZone::kNear : HoleZone::kRim});
+                      0.0F, low ? HoleZone::kNear : HoleZone::kRim});
   }
   RimPoints scratch;
   RimSurface rim;
-  ASSERT_TRUE(fit_rim(points, 0.03, false, scratch, rim));
+  ASSERT_TRUE(fit_rim(points, kEverywhere, 0.03, false, scratch, rim));
   // Three standard errors of a mean of 600 points, and of gradients.
   EXPECT_NEAR(rim.height_at(0.0, 0.0), 0.3, 0.0015);
   EXPECT_NEAR(rim.height_at(0.5, 0.5) - rim.height_at(-0.5, -0.5), 0.05, 0.003);
   EXPECT_NEAR(rim.sigma, 0.005, 0.0005);
+}
+
+// Half as much 0.2 m away from the area, and so much less at its corners.
+TEST(HoleRim, NearPointsCountMore) {
+  const std::vector<Position2> places = {{0.4, -0.1}, {0.7, 0.0}, {-0.7, 0.0}, {0.7, -0.7}};
+  const std::vector<double> weights = {1.0, 0.5, 0.5, 1.0 / 3.0};
+  std::vector<HolePoint> points;
+  for (int k = 0; k < 12; ++k) {
+    const Position2& at = places[static_cast<std::size_t>(k % 4)];
+    points.push_back(
+        {static_cast<float>(at.x), static_cast<float>(at.y), 0.0F, k, 0, 0.0F, HoleZone::kRim});
+  }
+  RimPoints scratch;
+  RimSurface rim;
+  ASSERT_TRUE(fit_rim(points, {{-0.3, -0.3}, {0.3, 0.3}, 0.2}, 0.03, false, scratch, rim));
+  for (std::size_t k = 0; k < points.size(); ++k)
+    EXPECT_NEAR(scratch.weight[k], weights[k % 4], 1e-5) << k;
 }
 
 // A third of the points lie on walls, 0.01 to 0.03 m low. The scatter of all holds a band of 2.5 of
@@ -183,12 +203,12 @@ TEST(HoleRim, WallsDoNotHoldTheBandOpen) {
     const double low = k % 3 == 0 ? 0.01 + 0.02 * random.uniform() : 0.0;
     const double z = 0.003 * worlds::normal_deviate(random) - low;
     points.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), k, 0,
-                      1.0F, 0.0F, HoleZone::kRim});
+                      0.0F, HoleZone::kRim});
   }
   RimPoints scratch;
   RimSurface all, above;
-  ASSERT_TRUE(fit_rim(points, 0.03, false, scratch, all));
-  ASSERT_TRUE(fit_rim(points, 0.03, true, scratch, above));
+  ASSERT_TRUE(fit_rim(points, kEverywhere, 0.03, false, scratch, all));
+  ASSERT_TRUE(fit_rim(points, kEverywhere, 0.03, true, scratch, above));
   EXPECT_GT(all.sigma, 1.5 * above.sigma);
   EXPECT_LT(above.sigma, 0.006);
   EXPECT_NEAR(above.height_at(0.0, 0.0), 0.0, 0.002);
@@ -202,11 +222,11 @@ TEST(HoleRim, FollowsGroundThatBends) {
   for (int k = 0; k < 4000; ++k) {
     const double x = 2.0 * random.uniform() - 1.0, y = 2.0 * random.uniform() - 1.0;
     points.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(0.1 * x * x),
-                      k, 0, 1.0F, 0.0F, HoleZone::kRim});
+                      k, 0, 0.0F, HoleZone::kRim});
   }
   RimPoints scratch;
   RimSurface rim;
-  ASSERT_TRUE(fit_rim(points, 0.2, false, scratch, rim));
+  ASSERT_TRUE(fit_rim(points, kEverywhere, 0.2, false, scratch, rim));
   EXPECT_NEAR(rim.bend_xx, 0.1 / (1.0 + 30.0 / (4000 * 4.0 / 45.0)), 0.005);
   EXPECT_NEAR(rim.bend_yy, 0.0, 0.005);
 }
@@ -217,15 +237,15 @@ TEST(HoleRim, TooFewPointsOrALineAreNoSurface) {
   RimSurface rim;
   for (int k = 0; k < 7; ++k)
     points.push_back(
-        {static_cast<float>(k), static_cast<float>(k * k), 0.0F, k, 0, 1.0F, 0.0F, HoleZone::kRim});
-  EXPECT_FALSE(fit_rim(points, 0.03, false, scratch, rim));
-  for (int k = 0; k < 20; ++k)
-    points.push_back({0.0F, 0.0F, 0.0F, k, 0, 1.0F, 0.0F, HoleZone::kFloor});
-  EXPECT_FALSE(fit_rim(points, 0.03, false, scratch, rim)) << "the floor does not count";
+        {static_cast<float>(k), static_cast<float>(k * k), 0.0F, k, 0, 0.0F, HoleZone::kRim});
+  EXPECT_FALSE(fit_rim(points, kEverywhere, 0.03, false, scratch, rim));
+  for (int k = 0; k < 20; ++k) points.push_back({0.0F, 0.0F, 0.0F, k, 0, 0.0F, HoleZone::kFloor});
+  EXPECT_FALSE(fit_rim(points, kEverywhere, 0.03, false, scratch, rim))
+      << "the floor does not count";
   points.clear();
   for (int k = 0; k < 20; ++k)
-    points.push_back({static_cast<float>(k), 0.0F, 0.0F, k, 0, 1.0F, 0.0F, HoleZone::kRim});
-  EXPECT_FALSE(fit_rim(points, 0.03, false, scratch, rim)) << "a line";
+    points.push_back({static_cast<float>(k), 0.0F, 0.0F, k, 0, 0.0F, HoleZone::kRim});
+  EXPECT_FALSE(fit_rim(points, kEverywhere, 0.03, false, scratch, rim)) << "a line";
 }
 
 }  // namespace

@@ -109,7 +109,8 @@ inline void measure(const PointsView& points, const DescriptionParams& params,
   find_field_ground(points, params.ground_surface, params.ground_labels, stages.field);
   build_elevation_grid(points, params.grid, workspace, stages.grid, stages.point_slots,
                        stages.field.points.height.data());
-  measure_field_cells(stages.field, stages.grid, stages.point_slots, stages.cells, stages.ground);
+  measure_field_cells(points, stages.field, stages.grid, stages.point_slots, stages.cells,
+                      stages.ground);
 }
 inline void measure(const Points& points, const DescriptionParams& params, FieldStages& stages) {
   measure(points.view(), params, stages);

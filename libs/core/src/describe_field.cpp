@@ -19,17 +19,22 @@ bool belongs(Support support, GroundRule rule, float raised) {
                                   : support == Support::kAbove || raised > 0.0F;
 }
 
-void find_cluster_slots(const DescriptionWorkspace& workspace, const GroundSegmentation& ground,
-                        PointSlots& cluster_slots) {
+// Finds the points that clusters consist of.
+void find_cluster_points(const Description& description, DescriptionWorkspace& workspace) {
   const FieldPoints& points = workspace.field.points;
   const PointSlots& point_slots = workspace.point_slots;
-  cluster_slots.resize(point_slots.size());
+  workspace.cluster_slots.resize(point_slots.size());
+  workspace.cluster_points.clear();
   for (std::size_t i = 0; i < point_slots.size(); ++i) {
     const std::int32_t slot = point_slots[i];
+    const auto cell = static_cast<std::size_t>(slot);
     const bool member = slot >= 0 && workspace.holes.stray[i] == 0 &&
-                        belongs(points.support[i], ground.rule[static_cast<std::size_t>(slot)],
+                        belongs(points.support[i], description.ground.rule[cell],
                                 workspace.raised_ground.height[i]);
-    cluster_slots[i] = member ? slot : point_slot_of(UnknownReason::kNone);
+    workspace.cluster_slots[i] = member ? slot : point_slot_of(UnknownReason::kNone);
+    if (!member || description.clusters.cluster_of[cell] == kNoCluster) continue;
+    workspace.cluster_points.push_back(
+        {static_cast<std::int32_t>(i), description.clusters.cluster_of[cell]});
   }
 }
 
@@ -54,20 +59,19 @@ void label_field_points(const PointsView& points, const DeckParams& decks,
   label_climbed_sides(workspace.field, static_cast<float>(decks.side), workspace.decks,
                       result.support);
   result.reason.resize(n);
-  result.terrain_class.resize(n);
-  result.cluster.resize(n);
+  result.terrain_class.assign(n, TerrainClass::kNone);
+  result.cluster.assign(n, kNoCluster);
   for (std::size_t i = 0; i < n; ++i) {
     const bool known = result.support[i] != Support::kUnknown;
     // A point in the map has no support where the map reaches beyond the reference.
     const UnknownReason reason = workspace.point_slots[i] < 0 ? reason_of(workspace.point_slots[i])
                                                               : UnknownReason::kOutsideMap;
     result.reason[i] = known ? UnknownReason::kNone : reason;
-    const std::int32_t slot = workspace.cluster_slots[i];
-    result.cluster[i] =
-        slot < 0 ? kNoCluster : description.clusters.cluster_of[static_cast<std::size_t>(slot)];
-    result.terrain_class[i] = result.cluster[i] == kNoCluster
-                                  ? TerrainClass::kNone
-                                  : workspace.class_of[static_cast<std::size_t>(result.cluster[i])];
+  }
+  for (const ClusterPoint& member : workspace.cluster_points) {
+    const auto i = static_cast<std::size_t>(member.point);
+    result.cluster[i] = member.cluster;
+    result.terrain_class[i] = workspace.class_of[static_cast<std::size_t>(member.cluster)];
   }
 }
 
@@ -85,8 +89,8 @@ void describe_field(const ScanView& scan, const DescriptionParams& params,
   description.projection =
       build_elevation_grid(scan.points, params.grid, workspace.grid, description.grid,
                            workspace.point_slots, workspace.field.points.height.data());
-  measure_field_cells(workspace.field, description.grid, workspace.point_slots, description.field,
-                      description.ground);
+  measure_field_cells(scan.points, workspace.field, description.grid, workspace.point_slots,
+                      description.field, description.ground);
   const HoleInput hole_input{workspace.field, description.grid, scan.origins};
   find_holes(hole_input, params.holes, workspace.holes, description.field, description.ground,
              description.holes, description.hole_cells);
@@ -104,7 +108,7 @@ void describe_field(const ScanView& scan, const DescriptionParams& params,
   find_field_clusters(description.grid, description.ground, description.field,
                       params.field_clusters, workspace.field_clusters, description.clusters,
                       scan.origins.known() ? &scan.origins.of(0) : nullptr);
-  find_cluster_slots(workspace, description.ground, workspace.cluster_slots);
+  find_cluster_points(description, workspace);
   done(Stage::kClusters);
   measure_things(stage, workspace, description);
   done(Stage::kHeightAndRoughness);

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "face_consensus.h"
@@ -136,8 +137,8 @@ BeamPlaneFit fit_face(const BeamPlane& first, const BeamSlopeParams& params, Bea
   return fit;
 }
 
-std::int32_t column_of(float dx, float dy) {
-  return static_cast<std::int32_t>(std::floor(std::atan2(dy, dx) / kColumn));
+std::int32_t column_of(std::size_t point, FaceSlopeWorkspace& workspace) {
+  return static_cast<std::int32_t>(std::floor(azimuth_of(point, workspace) / kColumn));
 }
 float elevation_of(float dz) { return std::asin(std::clamp(dz, -1.0F, 1.0F)); }
 
@@ -157,7 +158,7 @@ Moments find_face(const BeamPlaneFit& fit, FaceSlopeWorkspace& workspace) {
     if (workspace.beyond[i] != 0 || std::abs(e) > kOnFace * sigma) continue;
     sums.add(points.x[i], points.y[i], points.z[i]);
     FaceBeam& beam = workspace.beams.emplace_back();
-    beam.column = column_of(points.dx[i], points.dy[i]);
+    beam.column = column_of(i, workspace);
     beam.elevation = elevation_of(points.dz[i]);
     beam.point = static_cast<std::int32_t>(i);
   }
@@ -167,20 +168,27 @@ Moments find_face(const BeamPlaneFit& fit, FaceSlopeWorkspace& workspace) {
 
 // Share of the face in what is seen between its lowest and highest point of every column: a face is
 // in sight as a whole, while planes through bushes are not.
-// \param beams of the face, sorted
-double closed_share(const BeamPoints& points, const std::vector<FaceBeam>& beams) {
+// \param workspace with the sorted beams of the face, one at least
+double closed_share(FaceSlopeWorkspace& workspace) {
+  const std::vector<FaceBeam>& beams = workspace.beams;
+  const BeamPoints& points = workspace.points;
+  const std::int32_t first = beams.front().column, last = beams.back().column;
+  std::vector<ColumnExtent>& columns = workspace.columns;
+  constexpr float kMost = std::numeric_limits<float>::max();
+  columns.assign(static_cast<std::size_t>(last - first) + 1, {kMost, -kMost});
+  for (const FaceBeam& beam : beams) {
+    ColumnExtent& extent = columns[static_cast<std::size_t>(beam.column - first)];
+    extent.low = std::min(extent.low, beam.elevation);
+    extent.high = std::max(extent.high, beam.elevation);
+  }
   std::size_t between = 0;
   for (std::size_t i = 0; i < points.size; ++i) {
-    const std::int32_t column = column_of(points.dx[i], points.dy[i]);
-    const auto first = std::lower_bound(
-        beams.begin(), beams.end(), column,
-        [](const FaceBeam& beam, std::int32_t wanted) { return beam.column < wanted; });
-    const auto end = std::upper_bound(
-        first, beams.end(), column,
-        [](std::int32_t wanted, const FaceBeam& beam) { return wanted < beam.column; });
-    if (first == end) continue;
+    const std::int32_t column = column_of(i, workspace);
+    if (column < first || column > last) continue;
+    const ColumnExtent& extent = columns[static_cast<std::size_t>(column - first)];
+    if (extent.low > extent.high) continue;
     const float elevation = elevation_of(points.dz[i]);
-    between += elevation >= first->elevation && elevation <= (end - 1)->elevation ? 1U : 0U;
+    between += elevation >= extent.low && elevation <= extent.high ? 1U : 0U;
   }
   return static_cast<double>(beams.size()) / static_cast<double>(std::max<std::size_t>(between, 1));
 }
@@ -326,6 +334,7 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
     return slope;
   }
   load(points, origins, members, centre, workspace.points);
+  workspace.azimuth.assign(workspace.points.size, kUnknownAzimuth);
   BeamPlaneFit fit = fit_face(*first, params, workspace.points);
   if (!fit.ok) {
     slope.status = FeatureStatus::kDegenerate;
@@ -341,8 +350,7 @@ Slope estimate_face_slope(const PointsView& points, const BeamOrigins& origins, 
     return slope;
   }
   const double least = params.least_share * static_cast<double>(members.size());
-  if (!is_seen_from_above(fit, beam, params) ||
-      closed_share(workspace.points, workspace.beams) < kClosed ||
+  if (!is_seen_from_above(fit, beam, params) || closed_share(workspace) < kClosed ||
       (fit.inliers < least &&
        (around == nullptr || !is_clear(face, centre.cast<double>(), *around, workspace)))) {
     report(fit, centre.cast<double>(), slope);

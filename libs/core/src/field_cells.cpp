@@ -31,37 +31,41 @@ void put_in_order(const PointsView& scan, const std::vector<std::int32_t>& place
   }
 }
 
-void reset(std::size_t n, FieldCells& cells) {
-  cells.ground.resize(n);
-  for (auto* counts : {&cells.on, &cells.above, &cells.below}) counts->assign(n, 0);
-  cells.low.assign(n, std::numeric_limits<float>::max());
-  cells.high.assign(n, 0.0F);
-  cells.floor.assign(n, 0.0F);
-}
-
-void count_points(const FieldPoints& points, const PointSlots& point_slots, FieldCells& cells) {
+// One pass over the points for all that is summed up over them: the sums of a cell lie together.
+void sum_points(const PointsView& points, const FieldPoints& field, const PointSlots& point_slots,
+                std::vector<FieldCellSums>& sums) {
   for (std::size_t i = 0; i < point_slots.size(); ++i) {
     if (point_slots[i] < 0) continue;
-    const auto slot = static_cast<std::size_t>(point_slots[i]);
-    const float height = points.height[i];
-    switch (points.support[i]) {
+    FieldCellSums& to = sums[static_cast<std::size_t>(point_slots[i])];
+    const float height = field.height[i];
+    switch (field.support[i]) {
       case Support::kGround:
-        ++cells.on[slot];
-        cells.floor[slot] += height;
+        to.x += points.x[i];
+        to.y += points.y[i];
+        to.z += points.z[i];
+        ++to.on;
+        to.floor += height;
         break;
       case Support::kAbove:
-        ++cells.above[slot];
-        cells.low[slot] = std::min(cells.low[slot], height);
-        cells.high[slot] = std::max(cells.high[slot], height);
+        ++to.above;
+        to.low = std::min(to.low, height);
+        to.high = std::max(to.high, height);
         break;
       case Support::kBelow:
-        ++cells.below[slot];
-        cells.floor[slot] += height;
+        ++to.below;
+        to.floor += height;
         break;
       case Support::kUnknown:
         break;
     }
   }
+}
+
+void resize(std::size_t n, FieldCells& cells, GroundSegmentation& ground) {
+  for (auto* values : {&cells.ground, &cells.low, &cells.high, &cells.floor, &ground.h_mean})
+    values->resize(n);
+  for (auto* counts : {&cells.on, &cells.above, &cells.below}) counts->resize(n);
+  ground.rule.resize(n);
 }
 
 }  // namespace
@@ -75,25 +79,29 @@ void find_field_ground(const ScanView& scan, const GroundSurfaceParams& surface,
                workspace.support, workspace.points);
 }
 
-void measure_field_cells(const FieldWorkspace& workspace, const ElevationGrid& grid,
-                         const PointSlots& point_slots, FieldCells& cells,
-                         GroundSegmentation& ground) {
-  reset(grid.observed(), cells);
-  count_points(workspace.points, point_slots, cells);
-  ground.rule.resize(grid.observed());
-  ground.h_mean.resize(grid.observed());
+void measure_field_cells(const PointsView& points, FieldWorkspace& workspace,
+                         const ElevationGrid& grid, const PointSlots& point_slots,
+                         FieldCells& cells, GroundSegmentation& ground) {
+  workspace.sums.assign(grid.observed(), {});
+  sum_points(points, workspace.points, point_slots, workspace.sums);
+  resize(grid.observed(), cells, ground);
   const LevelView reference = view_of(workspace.surface);
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
+    const FieldCellSums& sums = workspace.sums[slot];
     const Position2 centre = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[slot]));
     cells.ground[slot] =
         reference.at(static_cast<float>(centre.x), static_cast<float>(centre.y)).height;
+    cells.on[slot] = sums.on;
+    cells.above[slot] = sums.above;
+    cells.below[slot] = sums.below;
+    cells.low[slot] = sums.above == 0 ? 0.0F : sums.low;
+    cells.high[slot] = sums.high;
+    const auto low_points = static_cast<float>(sums.on + sums.below);
+    cells.floor[slot] = cells.ground[slot] + sums.floor / std::max(low_points, 1.0F);
     ground.h_mean[slot] = grid.h_mean[slot] - cells.ground[slot];
-    ground.rule[slot] = cells.above[slot] > 0   ? GroundRule::kHigh
-                        : cells.below[slot] > 0 ? GroundRule::kLow
-                                                : GroundRule::kGround;
-    if (cells.above[slot] == 0) cells.low[slot] = 0.0F;
-    const auto low_points = static_cast<float>(cells.on[slot] + cells.below[slot]);
-    cells.floor[slot] = cells.ground[slot] + cells.floor[slot] / std::max(low_points, 1.0F);
+    ground.rule[slot] = sums.above > 0   ? GroundRule::kHigh
+                        : sums.below > 0 ? GroundRule::kLow
+                                         : GroundRule::kGround;
   }
 }
 

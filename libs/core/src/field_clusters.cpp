@@ -46,13 +46,14 @@ struct Linker {
     const std::size_t deck = cells.deck[a] >= 0 ? a : b, other = cells.deck[a] >= 0 ? b : a;
     return cells.above[other] == 0 || high(other) <= high(deck) + level;
   }
-  [[nodiscard]] bool compatible(std::size_t a, std::size_t b, bool touching) const {
+  // Upright surfaces have no gaps; what lies flat is seen by a ring here and one there.
+  [[nodiscard]] bool may_have_gaps(std::size_t slot) const {
+    return is_hole(slot) || high(slot) - low(slot) <= flat;
+  }
+  [[nodiscard]] bool compatible(std::size_t a, std::size_t b) const {
     if (is_hole(a) || is_hole(b)) return is_hole(a) && is_hole(b);
     if (!same_kind(a, b)) return false;
-    const float low_a = low(a), low_b = low(b), high_a = high(a), high_b = high(b);
-    if (std::max(low_a, low_b) - std::min(high_a, high_b) > step) return false;
-    // Upright surfaces have no gaps; what lies flat is seen by a ring here and one there.
-    return touching || (high_a - low_a <= flat && high_b - low_b <= flat);
+    return std::max(low(a), low(b)) - std::min(high(a), high(b)) <= step;
   }
   // Whether two near cells are of two things all the same.
   [[nodiscard]] bool divided(std::size_t a, std::size_t b) const {
@@ -70,24 +71,28 @@ int reach_of(const ElevationGrid& grid, const FieldClusterParams& params, CellIn
 // Unites a cell with those marked so far, which are before it in the order of the slots, that are
 // near enough, and marks it.
 void link_back(const Linker& linker, std::size_t slot, const FieldClusterParams& params,
-               CellBits& members, std::vector<std::int32_t>& parent) {
+               FieldClusterWorkspace& workspace) {
+  std::vector<std::int32_t>& parent = workspace.parent;
   const ElevationGrid& grid = linker.grid;
   const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
   auto root = static_cast<std::int32_t>(slot);
-  const auto link = [&](CellIndex near, bool touching) {
+  const auto link = [&](CellIndex near) {
     const Slot other = grid.slot_within(near);
     const auto beside = static_cast<std::size_t>(other);
-    if (parent[beside] == root || root_of(parent, other) == root) return;
-    if (!linker.compatible(slot, beside, touching) || linker.divided(slot, beside)) return;
-    unite(parent, root, other);
-    root = root_of(parent, root);
+    if (parent[beside] == root) return;
+    const std::int32_t other_root = root_of(parent, other);
+    if (other_root == root) return;
+    if (!linker.compatible(slot, beside) || linker.divided(slot, beside)) return;
+    root = unite_roots(parent, root, other_root);
   };
+  workspace.members.for_marked_before(at, 1, link);
+  workspace.members.mark(at);
+  if (!linker.may_have_gaps(slot)) return;
   // Most of what is farther away is of one thing with what touches: then nothing more is asked.
-  members.for_marked_before(at, 1, [&](CellIndex near) { link(near, true); });
-  members.for_marked_before(at, reach_of(grid, params, at), [&](CellIndex near) {
-    if (at.l - near.l > 1 || std::abs(at.w - near.w) > 1) link(near, false);
+  workspace.flat.for_marked_before(at, reach_of(grid, params, at), [&](CellIndex near) {
+    if (at.l - near.l > 1 || std::abs(at.w - near.w) > 1) link(near);
   });
-  members.mark(at);
+  workspace.flat.mark(at);
 }
 
 /// Links cells of raised ground with nothing but unseen cells between them: a curb or a ramp that
@@ -197,12 +202,11 @@ void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& gr
                       beams ? &*beams : nullptr};
   const std::size_t n = grid.observed();
   workspace.parent.resize(n);
-  workspace.members.clear(grid.geometry);
-  workspace.raised.clear(grid.geometry);
+  for (auto* bits : {&workspace.members, &workspace.flat, &workspace.raised})
+    bits->clear(grid.geometry);
   for (std::size_t slot = 0; slot < n; ++slot) {
     workspace.parent[slot] = static_cast<std::int32_t>(slot);
-    if (linker.is_member(slot))
-      link_back(linker, slot, params, workspace.members, workspace.parent);
+    if (linker.is_member(slot)) link_back(linker, slot, params, workspace);
   }
   const UnseenLinker unseen(linker, params);
   for (std::size_t slot = 0; slot < n; ++slot)

@@ -22,7 +22,8 @@ GridGeometry::GridGeometry(double length, double width, double cell_size)
       half_width_(width / 2),
       cells_per_metre_(1 / cell_size),
       cells_l_(cells_along(length, cell_size)),
-      cells_w_(cells_along(width, cell_size)) {
+      cells_w_(cells_along(width, cell_size)),
+      by_stride_(stride()) {
   assert(length > 0 && width > 0 && cell_size > 0);
   assert((cells_l_ + 2.0) * (cells_w_ + 2.0) < 2147483647.0);
 }

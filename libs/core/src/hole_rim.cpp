@@ -10,7 +10,7 @@
 #include <cstring>
 #include <limits>
 
-#include "lanes.h"
+#include "lane_parts.h"
 #include "wide_registers.h"
 
 namespace mrpt_terrain {
@@ -24,6 +24,8 @@ constexpr double kOutlier = 2.5;  // standard deviations
 constexpr double kLeastBand = 0.015;  // metres
 // A few things that stand there are part of the rim up to this many times the band.
 constexpr double kUpperBand = 3.0;
+// Points count half at this distance from the hole, metres.
+constexpr double kHalfWeight = 0.2;
 // Weight of "no bending", in points times m^4: within half a metre, a hundred points outweigh it.
 constexpr double kHold = 30.0;
 
@@ -42,96 +44,89 @@ struct PowerSums {
   }
 };
 
-MRPT_TERRAIN_LANES void load_rim(const RimPoints& points, std::size_t i, DoubleLanes& u,
-                                 DoubleLanes& v, DoubleLanes& z) {
-  load_from(points.u.data() + i, u);
-  load_from(points.v.data() + i, v);
-  load_from(points.z.data() + i, z);
-}
+/// Points of a rim side by side.
+template <class Lanes>
+struct RimLanes {
+  Lanes u, v, z;
 
-// How far the points lie below the surface, which is about the same origin as they are.
-MRPT_TERRAIN_LANES void depths_below(const RimSurface& rim, const DoubleLanes& u,
-                                     const DoubleLanes& v, const DoubleLanes& z, DoubleLanes& low) {
-  low = rim.gradient_x * u + rim.gradient_y * v + rim.bend_xx * u * u + rim.bend_xy * u * v +
-        rim.bend_yy * v * v - z;
-}
-
-MRPT_TERRAIN_LANES double total(const DoubleLanes& lanes) {
-  double value[kCellLanes];
-  std::memcpy(value, &lanes, sizeof(value));
-  double sum = 0.0;
-  for (const double lane : value) sum += lane;
-  return sum;
-}
+  [[gnu::always_inline]] RimLanes(const RimPoints& points, std::size_t i)
+      : u(Lanes::from(points.u.data() + i)),
+        v(Lanes::from(points.v.data() + i)),
+        z(Lanes::from(points.z.data() + i)) {}
+};
 
 // How many points have a weight.
-MRPT_TERRAIN_LANES void count_weights(const DoubleLanes& w, DoubleLanes& count) {
-  const DoubleLanes none = w * 0.0;
-  count += w > 0.0 ? none + 1.0 : none;
+template <class Lanes>
+[[gnu::always_inline]] inline void count_weights(const Lanes& w, Lanes& count) {
+  const Lanes zero{};
+  Lanes counts{};
+  counts.take_where_less(zero, w, Lanes::of(1.0));
+  count += counts;
 }
 
 // The weights of the points within the band about the surface, 0 for the others.
-MRPT_TERRAIN_LANES void weights_within(const RimPoints& points, std::size_t i, double band,
-                                       const DoubleLanes& low, DoubleLanes& w) {
-  const DoubleLanes zero{};
-  load_from(points.weight.data() + i, w);
-  keep_up_to(low, zero + band, w);
-  keep_up_to(zero - kUpperBand * band, low, w);
+template <class Lanes>
+[[gnu::always_inline]] inline Lanes weights_within(const RimPoints& points, std::size_t i,
+                                                   double band, const Lanes& low) {
+  Lanes w = Lanes::from(points.weight.data() + i);
+  w.drop_where_less(Lanes::of(band), low);
+  w.drop_where_less(low, Lanes::of(-kUpperBand * band));
+  return w;
 }
 
-// Lets the points within the band count. Returns whether they are others than before.
-MRPT_TERRAIN_WIDE_REGISTERS
-bool choose_points(double band, RimPoints& points) {
-  MaskLanes changed = {};
+// Lets the points within the band count.
+// \param[out] changed whether they are others than before
+template <class Lanes>
+[[gnu::always_inline]] inline void choose_points_in(double band, RimPoints& points, bool& changed) {
+  Lanes differences{};
   for (std::size_t i = 0; i < points.size; i += kCellLanes) {
-    DoubleLanes low, before, w;
-    load_from(points.low.data() + i, low);
-    load_from(points.counted.data() + i, before);
-    weights_within(points, i, band, low, w);
-    changed |= w != before;
-    std::memcpy(points.counted.data() + i, &w, sizeof(w));
+    const Lanes w = weights_within(points, i, band, Lanes::from(points.low.data() + i));
+    const Lanes off = w - Lanes::from(points.counted.data() + i);
+    differences += off * off;
+    w.copy_to(points.counted.data() + i);
   }
-  return any_of(changed);
+  changed = differences.total() > 0.0;
 }
+MRPT_TERRAIN_LANE_FUNCTION(choose_points, (double band, RimPoints& points, bool& changed),
+                           (band, points, changed))
 
-// Sums over the points that count, as far as a plane needs them. Loads its lanes as the next
-// function does: from a common one, as a struct of lanes, the search for holes took a tenth longer.
-MRPT_TERRAIN_WIDE_REGISTERS
-void sum_for_plane(const RimPoints& points, PowerSums& sums) {
-  DoubleLanes moment[6] = {}, heights[3] = {}, count = {};
+// Sums over the points that count, as far as a plane needs them.
+template <class Lanes>
+[[gnu::always_inline]] inline void sum_for_plane_in(const RimPoints& points, PowerSums& sums) {
+  Lanes moment[6] = {}, heights[3] = {}, count = {};
   for (std::size_t i = 0; i < points.size; i += kCellLanes) {
-    DoubleLanes u, v, z, w;
-    load_rim(points, i, u, v, z);
-    load_from(points.counted.data() + i, w);
+    const RimLanes<Lanes> p(points, i);
+    const Lanes w = Lanes::from(points.counted.data() + i);
     count_weights(w, count);
-    const DoubleLanes wu = w * u, wv = w * v;
+    const Lanes wu = w * p.u, wv = w * p.v;
     moment[0] += w;
     moment[1] += wu;
     moment[2] += wv;
-    moment[3] += wu * u;
-    moment[4] += wu * v;
-    moment[5] += wv * v;
-    heights[0] += w * z;
-    heights[1] += wu * z;
-    heights[2] += wv * z;
+    moment[3] += wu * p.u;
+    moment[4] += wu * p.v;
+    moment[5] += wv * p.v;
+    heights[0] += w * p.z;
+    heights[1] += wu * p.z;
+    heights[2] += wv * p.z;
   }
-  for (std::size_t k = 0; k < 6; ++k) sums.moment[k] = total(moment[k]);
-  for (std::size_t k = 0; k < 3; ++k) sums.height[k] = total(heights[k]);
-  sums.points = total(count);
+  for (std::size_t k = 0; k < 6; ++k) sums.moment[k] = moment[k].total();
+  for (std::size_t k = 0; k < 3; ++k) sums.height[k] = heights[k].total();
+  sums.points = count.total();
 }
+MRPT_TERRAIN_LANE_FUNCTION(sum_for_plane, (const RimPoints& points, PowerSums& sums),
+                           (points, sums))
 
 // All sums over the points that count.
-MRPT_TERRAIN_WIDE_REGISTERS
-void sum_for_bend(const RimPoints& points, PowerSums& sums) {
-  DoubleLanes moment[PowerSums::kMoments] = {}, heights[PowerSums::kHeights] = {}, count = {};
+template <class Lanes>
+[[gnu::always_inline]] inline void sum_for_bend_in(const RimPoints& points, PowerSums& sums) {
+  Lanes moment[PowerSums::kMoments] = {}, heights[PowerSums::kHeights] = {}, count = {};
   for (std::size_t i = 0; i < points.size; i += kCellLanes) {
-    DoubleLanes u, v, z, w;
-    load_rim(points, i, u, v, z);
-    load_from(points.counted.data() + i, w);
+    const RimLanes<Lanes> p(points, i);
+    const Lanes w = Lanes::from(points.counted.data() + i);
     count_weights(w, count);
-    const DoubleLanes wu = w * u, wv = w * v;
-    const DoubleLanes wuu = wu * u, wuv = wu * v, wvv = wv * v;
-    const DoubleLanes wuuu = wuu * u, wuuv = wuu * v, wuvv = wuv * v, wvvv = wvv * v;
+    const Lanes wu = w * p.u, wv = w * p.v;
+    const Lanes wuu = wu * p.u, wuv = wu * p.v, wvv = wv * p.v;
+    const Lanes wuuu = wuu * p.u, wuuv = wuu * p.v, wuvv = wuv * p.v, wvvv = wvv * p.v;
     moment[0] += w;
     moment[1] += wu;
     moment[2] += wv;
@@ -142,22 +137,23 @@ void sum_for_bend(const RimPoints& points, PowerSums& sums) {
     moment[7] += wuuv;
     moment[8] += wuvv;
     moment[9] += wvvv;
-    moment[10] += wuuu * u;
-    moment[11] += wuuu * v;
-    moment[12] += wuuv * v;
-    moment[13] += wuvv * v;
-    moment[14] += wvvv * v;
-    heights[0] += w * z;
-    heights[1] += wu * z;
-    heights[2] += wv * z;
-    heights[3] += wuu * z;
-    heights[4] += wuv * z;
-    heights[5] += wvv * z;
+    moment[10] += wuuu * p.u;
+    moment[11] += wuuu * p.v;
+    moment[12] += wuuv * p.v;
+    moment[13] += wuvv * p.v;
+    moment[14] += wvvv * p.v;
+    heights[0] += w * p.z;
+    heights[1] += wu * p.z;
+    heights[2] += wv * p.z;
+    heights[3] += wuu * p.z;
+    heights[4] += wuv * p.z;
+    heights[5] += wvv * p.z;
   }
-  for (std::size_t k = 0; k < PowerSums::kMoments; ++k) sums.moment[k] = total(moment[k]);
-  for (std::size_t k = 0; k < PowerSums::kHeights; ++k) sums.height[k] = total(heights[k]);
-  sums.points = total(count);
+  for (std::size_t k = 0; k < PowerSums::kMoments; ++k) sums.moment[k] = moment[k].total();
+  for (std::size_t k = 0; k < PowerSums::kHeights; ++k) sums.height[k] = heights[k].total();
+  sums.points = count.total();
 }
+MRPT_TERRAIN_LANE_FUNCTION(sum_for_bend, (const RimPoints& points, PowerSums& sums), (points, sums))
 
 /// Sums over points about a surface.
 struct SpreadSums {
@@ -166,33 +162,39 @@ struct SpreadSums {
   double squares_above = 0.0, weights_above = 0.0;  ///< of the points that are not below it
 };
 
-// Measures how far all points lie below the surface, which has z = 0 at the origin but for
-// `height`, and sums up those within the band.
-MRPT_TERRAIN_WIDE_REGISTERS
-void sum_squares(const RimSurface& rim, double height, double band, RimPoints& points,
-                 SpreadSums& sums) {
-  const DoubleLanes zero{};
-  DoubleLanes squares = {}, weights = {}, count = {}, squares_above = {}, weights_above = {};
+// Measures how far all points lie below the surface, which is about the same origin as they are and
+// has z = 0 there but for `height`, and sums up those within the band.
+template <class Lanes>
+[[gnu::always_inline]] inline void sum_squares_in(const RimSurface& surface, double height,
+                                                  double band, RimPoints& points,
+                                                  SpreadSums& sums) {
+  const RimSurface rim = surface;
+  const Lanes zero{};
+  Lanes squares = {}, weights = {}, count = {}, squares_above = {}, weights_above = {};
   for (std::size_t i = 0; i < points.size; i += kCellLanes) {
-    DoubleLanes u, v, z, low, w;
-    load_rim(points, i, u, v, z);
-    depths_below(rim, u, v, z, low);
-    low += height;
-    std::memcpy(points.low.data() + i, &low, sizeof(low));
-    weights_within(points, i, band, low, w);
+    const RimLanes<Lanes> p(points, i);
+    Lanes low = rim.gradient_x * p.u + rim.gradient_y * p.v + rim.bend_xx * p.u * p.u +
+                rim.bend_xy * p.u * p.v + rim.bend_yy * p.v * p.v - p.z;
+    low += Lanes::of(height);
+    low.copy_to(points.low.data() + i);
+    Lanes w = weights_within(points, i, band, low);
     squares += w * low * low;
     weights += w;
     count_weights(w, count);
-    keep_up_to(low, zero, w);
+    w.drop_where_less(zero, low);
     squares_above += w * low * low;
     weights_above += w;
   }
-  sums.squares = total(squares);
-  sums.weights = total(weights);
-  sums.count = total(count);
-  sums.squares_above = total(squares_above);
-  sums.weights_above = total(weights_above);
+  sums.squares = squares.total();
+  sums.weights = weights.total();
+  sums.count = count.total();
+  sums.squares_above = squares_above.total();
+  sums.weights_above = weights_above.total();
 }
+MRPT_TERRAIN_LANE_FUNCTION(sum_squares,
+                           (const RimSurface& surface, double height, double band,
+                            RimPoints& points, SpreadSums& sums),
+                           (surface, height, band, points, sums))
 
 // The surface of least squares through the points of the sums.
 // \param[out] height of the surface at the origin
@@ -259,25 +261,49 @@ RimSpread spread_of(const RimSurface& rim, double height, double band, int terms
 struct PlaceSums {
   double x = 0.0, y = 0.0, z = 0.0, n = 0.0;
 
-  void add(const HolePoint& p) {
-    x += p.x;
-    y += p.y;
-    z += p.z;
+  void add(double px, double py, double pz) {
+    x += px;
+    y += py;
+    z += pz;
     n += 1.0;
   }
 };
 
 // Takes the points around in the frame of the scan. Those in cells away from the hole count.
-void take_around(const std::vector<HolePoint>& points, RimPoints& around, PlaceSums& all,
-                 PlaceSums& away) {
+// \return sums over these
+PlaceSums take_around(const std::vector<HolePoint>& points, RimPoints& around) {
   around.reserve((points.size() + kCellLanes - 1) / kCellLanes * kCellLanes);
   around.size = 0;
+  PlaceSums away;
   for (const HolePoint& p : points) {
     if (!is_around(p)) continue;
     const bool is_away = p.zone == HoleZone::kRim;
-    around.add(p.x, p.y, p.z, p.weight, is_away);
-    all.add(p);
-    if (is_away) away.add(p);
+    around.add(p.x, p.y, p.z, is_away ? 1.0 : 0.0);
+    if (is_away) away.add(p.x, p.y, p.z);
+  }
+  return away;
+}
+
+PlaceSums sum_all(const RimPoints& points) {
+  PlaceSums sums;
+  for (std::size_t i = 0; i < points.size; ++i) sums.add(points.u[i], points.v[i], points.z[i]);
+  return sums;
+}
+
+// The nearer to the hole, the more a point counts.
+MRPT_TERRAIN_WIDE_REGISTERS
+void weigh_points(const RimArea& area, RimPoints& points) {
+  const Position2 low = area.low, high = area.high;
+  const double margin = area.margin;
+  const double *u = points.u.data(), *v = points.v.data();
+  double *weight = points.weight.data(), *counted = points.counted.data();
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const double dx = std::max(std::max(low.x - margin - u[i], u[i] - high.x - margin), 0.0);
+    const double dy = std::max(std::max(low.y - margin - v[i], v[i] - high.y - margin), 0.0);
+    const auto w =
+        static_cast<float>(1.0 / (1.0 + (dx * dx + dy * dy) / (kHalfWeight * kHalfWeight)));
+    weight[i] = static_cast<double>(w);
+    counted[i] *= weight[i];
   }
 }
 
@@ -296,11 +322,12 @@ void move_to_origin(const RimSurface& rim, RimPoints& points) {
 // Takes the points around, about their mean, which becomes the origin of the surface, and some of
 // no weight for the lanes that are left over. In the first round those in cells away from the hole
 // count, or all if there are few.
-void start(const std::vector<HolePoint>& points, RimPoints& around, RimSurface& rim) {
-  PlaceSums all, away;
-  take_around(points, around, all, away);
+void start(const std::vector<HolePoint>& points, const RimArea& area, RimPoints& around,
+           RimSurface& rim) {
+  const PlaceSums away = take_around(points, around);
+  weigh_points(area, around);
   const bool enough = away.n >= kFewestRimPoints;
-  const PlaceSums& mean = enough ? away : all;
+  const PlaceSums mean = enough ? away : sum_all(around);
   const double share = 1.0 / std::max(mean.n, 1.0);
   rim = {};
   rim.x = mean.x * share;
@@ -308,7 +335,10 @@ void start(const std::vector<HolePoint>& points, RimPoints& around, RimSurface& 
   rim.z = mean.z * share;
   if (!enough) around.counted = around.weight;
   move_to_origin(rim, around);
-  while (around.size % kCellLanes != 0) around.add(0.0, 0.0, 0.0, 0.0, false);
+  while (around.size % kCellLanes != 0) {
+    around.weight[around.size] = 0.0;
+    around.add(0.0, 0.0, 0.0, 0.0);
+  }
 }
 
 bool same(const RimSurface& a, const RimSurface& b) {
@@ -318,16 +348,17 @@ bool same(const RimSurface& a, const RimSurface& b) {
 
 }  // namespace
 
-bool fit_rim(const std::vector<HolePoint>& points, double low, bool from_above, RimPoints& scratch,
-             RimSurface& rim) {
-  start(points, scratch, rim);
+bool fit_rim(const std::vector<HolePoint>& points, const RimArea& area, double low, bool from_above,
+             RimPoints& scratch, RimSurface& rim) {
+  start(points, area, scratch, rim);
   double band = low, height = 0.0;
   for (int round = 0; round < kRounds; ++round) {
     const bool plane = round < kPlaneRounds;
     const RimSurface before = rim;
     const double height_before = height, band_before = band;
     // Where the same points count, the same surface goes through them.
-    const bool changed = round == 0 || choose_points(band, scratch);
+    bool changed = true;
+    if (round > 0) choose_points(band, scratch, changed);
     if (changed || round == kPlaneRounds) {
       if (!(plane ? fit_plane(scratch, rim, height) : fit_bend(scratch, rim, height))) return false;
     }

@@ -22,14 +22,20 @@ struct RimSurface {
   }
 };
 
+/// A rectangle along the axes, and what lies up to `margin` around it; metres.
+struct RimArea {
+  Position2 low, high;
+  double margin = 0.0;
+};
+
 /// Fits the surface to the points around a hole (zones kRim and kNear) by weighted least squares,
-/// repeatedly without those that lie more than 2.5 standard deviations below it, of the points
-/// above it alone where that is less and `from_above` is set. Bending is held towards 0.
-/// \param low metres: points deeper than this never count
-/// \param from_above what lies low may be walls, and rings tell walls: their scatter does not count
-/// \param scratch overwritten; keeps its memory
-/// \return false if there are fewer than eight points, or they do not span a plane
-[[nodiscard]] bool fit_rim(const std::vector<HolePoint>& points, double low, bool from_above,
-                           RimPoints& scratch, RimSurface& rim);
+/// the weights being 1 in an area and a half at 0.2 m from it, repeatedly without those that lie
+/// more than 2.5 standard deviations below it, of the points above it alone where that is less and
+/// `from_above` is set. Bending is held towards 0. \param area of the hole \param low metres:
+/// points deeper than this never count \param from_above what lies low may be walls, and rings tell
+/// walls: their scatter does not count \param scratch overwritten; keeps its memory \return false
+/// if there are fewer than eight points, or they do not span a plane
+[[nodiscard]] bool fit_rim(const std::vector<HolePoint>& points, const RimArea& area, double low,
+                           bool from_above, RimPoints& scratch, RimSurface& rim);
 
 }  // namespace mrpt_terrain

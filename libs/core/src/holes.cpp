@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <utility>
 
 #include "hole_rim.h"
 #include "hole_rings.h"
@@ -34,10 +34,8 @@ constexpr float kWallTop = 0.05F;
 constexpr float kEdgeMean = 0.5F, kEdgeLowest = 2.0F;
 // Cells of one hole are up to this many cells apart.
 constexpr int kApart = 2;
-// The rim is looked for up to this far from the cells of a hole, metres...
+// The rim is looked for up to this far from the cells of a hole, metres.
 constexpr double kRimReach = 0.9;
-// ...and counts half at this distance.
-constexpr double kHalfWeight = 0.2;
 // Towards the sensor, rings leave the rim this many depths over the tangent of their fall ahead of
 // the floor, with some reserve; at most so far, metres.
 constexpr double kAheadDepths = 2.0, kFarthestAhead = 2.5;
@@ -69,9 +67,6 @@ constexpr int kLeastWalled = 4;
 constexpr double kDeeperStep = 1.0 / 3.0;
 // A part of a cell with cells of the whole on all sides makes so many.
 constexpr std::size_t kFewestAsWhole = 9;
-
-// Kinds of candidates.
-constexpr std::uint8_t kFloorCell = 1, kEdgeCell = 2, kDeeperCell = 3;
 
 struct RimLattice {
   int side;
@@ -181,7 +176,8 @@ void mark_candidates(const HoleInput& input, const HoleParams& params, HoleWorks
                      FieldCells& cells) {
   const ElevationGrid& grid = input.grid;
   const auto least = static_cast<float>(params.least_depth);
-  workspace.candidate.assign(grid.observed(), 0);
+  for (auto* candidates : {&workspace.floor, &workspace.edges, &workspace.deeper})
+    candidates->clear(grid.geometry);
   workspace.zone.assign(grid.observed(), HoleZone::kFar);
   workspace.deep.assign(grid.observed(), 0);
   workspace.all.assign(grid.observed(), 0);
@@ -190,7 +186,8 @@ void mark_candidates(const HoleInput& input, const HoleParams& params, HoleWorks
   const RimView rim{surface.lattice, surface.slot_of.data(), surface.cell.data(),
                     workspace.base.data()};
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
-    const Position2 centre = grid.geometry.centre_of(grid.geometry.index_of(grid.cell[slot]));
+    const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
+    const Position2 centre = grid.geometry.centre_of(at);
     cells.rim[slot] =
         rim.at(static_cast<float>(centre.x), static_cast<float>(centre.y), cells.ground[slot]);
     const bool floor = !holds_thing(cells, slot) && cells.on[slot] + cells.below[slot] > 0;
@@ -198,21 +195,23 @@ void mark_candidates(const HoleInput& input, const HoleParams& params, HoleWorks
     const bool edge =
         depth >= kEdgeMean * least && cells.rim[slot] - grid.h_min[slot] >= kEdgeLowest * least;
     if (floor && (edge || depth >= least))
-      workspace.candidate[slot] = depth >= least ? kFloorCell : kEdgeCell;
+      (depth >= least ? workspace.floor : workspace.edges).add(slot, at);
   }
 }
 
-// Takes the candidates of the same kind that are connected with the first one.
-void collect_members(const ElevationGrid& grid, std::size_t first, HoleWorkspace& workspace) {
-  const std::uint8_t kind = workspace.candidate[first];
-  workspace.members.assign(1, static_cast<std::int32_t>(first));
-  workspace.candidate[first] = 0;
-  for (std::size_t next = 0; next < workspace.members.size(); ++next) {
-    const auto slot = static_cast<std::size_t>(workspace.members[next]);
-    for_slots_around(grid, slot, kApart, [&](std::size_t other) {
-      if (workspace.candidate[other] != kind) return;
-      workspace.candidate[other] = 0;
-      workspace.members.push_back(static_cast<std::int32_t>(other));
+CellIndex cell_of(const ElevationGrid& grid, std::int32_t slot) {
+  return grid.geometry.index_of(grid.cell[static_cast<std::size_t>(slot)]);
+}
+
+// Takes the candidates that are connected with the first one.
+void collect_members(const ElevationGrid& grid, std::int32_t first, CellBits& candidates,
+                     std::vector<std::int32_t>& members) {
+  members.assign(1, first);
+  candidates.unmark(cell_of(grid, first));
+  for (std::size_t next = 0; next < members.size(); ++next) {
+    candidates.for_marked_around(cell_of(grid, members[next]), kApart, [&](CellIndex other) {
+      candidates.unmark(other);
+      members.push_back(grid.slot_within(other));
     });
   }
 }
@@ -220,12 +219,12 @@ void collect_members(const ElevationGrid& grid, std::size_t first, HoleWorkspace
 // What belongs to a hole and its edges is no other one; nor is what lies beside low cells that have
 // been looked at and are none: the foot of a kerb has such edges all along.
 void leave_out(const ElevationGrid& grid, HoleWorkspace& workspace) {
+  CellBits& edges = workspace.edges.left;
   for (const std::int32_t member : workspace.members) {
-    const auto slot = static_cast<std::size_t>(member);
-    workspace.candidate[slot] = 0;
-    for_slots_around(grid, slot, kApart, [&workspace](std::size_t near) {
-      if (workspace.candidate[near] == kEdgeCell) workspace.candidate[near] = 0;
-    });
+    const CellIndex at = cell_of(grid, member);
+    workspace.floor.left.unmark(at);
+    workspace.deeper.left.unmark(at);
+    edges.for_marked_around(at, kApart, [&edges](CellIndex near) { edges.unmark(near); });
   }
 }
 
@@ -255,23 +254,32 @@ bool is_too_wide(const HoleCase& hole) {
   return hole.grid().geometry.cell_size() * across > hole.params.widest;
 }
 
-void mark_zones(HoleCase& hole) {
-  std::vector<HoleZone>& zone = hole.workspace.zone;
-  for (const std::int32_t slot : hole.workspace.members)
-    zone[static_cast<std::size_t>(slot)] = HoleZone::kFloor;
-  for (const std::int32_t slot : hole.workspace.members) {
-    for_slots_around(hole.grid(), static_cast<std::size_t>(slot), 1, [&zone](std::size_t near) {
-      if (zone[near] == HoleZone::kFar) zone[near] = HoleZone::kNear;
-    });
-  }
+void set_zone(HoleZone zone, std::size_t slot, HoleWorkspace& workspace) {
+  if (workspace.zone[slot] == HoleZone::kFar)
+    workspace.zoned.push_back(static_cast<std::int32_t>(slot));
+  workspace.zone[slot] = zone;
 }
 
-void clear_zones(HoleCase& hole) {
-  std::vector<HoleZone>& zone = hole.workspace.zone;
-  for (const std::int32_t slot : hole.workspace.members) {
+// Marks the members from one on, and what is next to them.
+void mark_zones(HoleCase& hole, std::size_t first = 0) {
+  HoleWorkspace& workspace = hole.workspace;
+  const auto begin = workspace.members.begin() + static_cast<std::ptrdiff_t>(first);
+  std::for_each(begin, workspace.members.end(), [&workspace](std::int32_t slot) {
+    set_zone(HoleZone::kFloor, static_cast<std::size_t>(slot), workspace);
+  });
+  std::for_each(begin, workspace.members.end(), [&](std::int32_t slot) {
     for_slots_around(hole.grid(), static_cast<std::size_t>(slot), 1,
-                     [&zone](std::size_t near) { zone[near] = HoleZone::kFar; });
-  }
+                     [&workspace](std::size_t near) {
+                       if (workspace.zone[near] == HoleZone::kFar)
+                         set_zone(HoleZone::kNear, near, workspace);
+                     });
+  });
+}
+
+void clear_zones(HoleWorkspace& workspace) {
+  for (const std::int32_t slot : workspace.zoned)
+    workspace.zone[static_cast<std::size_t>(slot)] = HoleZone::kFar;
+  workspace.zoned.clear();
 }
 
 /// A rectangle in metres, and its part towards the sensor.
@@ -279,7 +287,7 @@ struct HoleWindow {
   Position2 low, high;
   double ahead_x = 0.0, ahead_y = 0.0;
   [[nodiscard]] bool contains(double x, double y) const {
-    return x >= low.x && x <= high.x && y >= low.y && y <= high.y;
+    return (x >= low.x) & (x <= high.x) & (y >= low.y) & (y <= high.y);
   }
 };
 
@@ -315,25 +323,31 @@ struct PlaceRange {
 void add_points(HoleCase& hole, const HoleWindow& window, bool far, PlaceRange places) {
   const GroundSurface& surface = hole.input.field.surface;
   const ElevationGrid& grid = hole.grid();
+  HoleWorkspace& workspace = hole.workspace;
+  // Chosen without branches: which points are in the window cannot be predicted.
+  workspace.places.resize(std::max(workspace.places.size(), places.last - places.first));
+  std::size_t chosen = 0;
   for (std::size_t k = places.first; k < places.last; ++k) {
-    if (hole.input.field.support[k] == Support::kAbove) continue;
     const CellPoint& p = surface.cells.points[k];
+    workspace.places[chosen] = k;
+    const bool above = hole.input.field.support[k] == Support::kAbove;
     // The window holds all cells of the floor and those next to them.
-    if (window.contains(p.x, p.y) == far) continue;
-    CellIndex cell;
-    if (!grid.geometry.cell_at(p.x, p.y, cell)) continue;
-    const Slot of = grid.slot_at(cell);
+    chosen += (!above & (window.contains(p.x, p.y) != far)) ? 1U : 0U;
+  }
+  for (std::size_t n = 0; n < chosen; ++n) {
+    const CellPoint& p = surface.cells.points[workspace.places[n]];
+    const std::int32_t id = grid.geometry.number_at(p.x, p.y, true);
+    const Slot of = id < 0 ? kUnobserved : grid.slot_of[static_cast<std::size_t>(id)];
     if (of == kUnobserved) continue;
-    HoleZone zone = hole.workspace.zone[static_cast<std::size_t>(of)];
+    HoleZone zone = workspace.zone[static_cast<std::size_t>(of)];
     if (zone == HoleZone::kFar && !far) zone = HoleZone::kRim;
     // Field by field: a point that is made first and then copied takes longer than all else here.
-    HolePoint& point = hole.workspace.points.emplace_back();
+    HolePoint& point = workspace.points.emplace_back();
     point.x = p.x;
     point.y = p.y;
     point.z = p.z;
     point.index = p.index;
     point.slot = of;
-    point.weight = 1.0F;
     point.depth = hole.cells.rim[static_cast<std::size_t>(of)] - p.z;
     point.zone = zone;
   }
@@ -383,79 +397,60 @@ void collect_points_ahead(HoleCase& hole, const HoleWindow& window) {
 // Points that are worked on together.
 constexpr std::size_t kTogether = 64;
 
-/// Where some points are, and a number for each: for loops of one kind of work, which compilers do
+/// Heights of the rim at the places of some points: a loop of one kind of work, which compilers do
 /// for many points at once.
-struct PointBatch {
-  std::size_t first = 0, size = 0;
+struct RimHeights {
   std::array<double, kTogether> x, y;
-  std::array<float, kTogether> result;
+  std::array<float, kTogether> height;
 };
 
-template <class Measure, class Take>
-void in_batches(std::vector<HolePoint>& points, Measure&& measure, Take&& take) {
-  PointBatch batch;
-  for (; batch.first < points.size(); batch.first += kTogether) {
-    batch.size = std::min(kTogether, points.size() - batch.first);
-    for (std::size_t i = 0; i < batch.size; ++i) {
-      batch.x[i] = points[batch.first + i].x;
-      batch.y[i] = points[batch.first + i].y;
-    }
-    measure(batch);
-    for (std::size_t i = 0; i < batch.size; ++i) take(points[batch.first + i], batch.result[i]);
-  }
-}
-
-// Weights about a rectangle from one corner to the other, and `half` a metre farther.
 MRPT_TERRAIN_WIDE_REGISTERS
-void measure_weights(const Position2 low, const Position2 high, double half, PointBatch& batch) {
-  for (std::size_t i = 0; i < batch.size; ++i) {
-    const double x = batch.x[i], y = batch.y[i];
-    const double dx = std::max(std::max(low.x - half - x, x - high.x - half), 0.0);
-    const double dy = std::max(std::max(low.y - half - y, y - high.y - half), 0.0);
-    batch.result[i] =
-        static_cast<float>(1.0 / (1.0 + (dx * dx + dy * dy) / (kHalfWeight * kHalfWeight)));
-  }
-}
-
-MRPT_TERRAIN_WIDE_REGISTERS
-void measure_heights(const RimSurface& surface, PointBatch& batch) {
+void measure_heights(const RimSurface& surface, std::size_t size, RimHeights& batch) {
   const RimSurface rim = surface;
-  for (std::size_t i = 0; i < batch.size; ++i)
-    batch.result[i] = static_cast<float>(rim.height_at(batch.x[i], batch.y[i]));
+  for (std::size_t i = 0; i < size; ++i)
+    batch.height[i] = static_cast<float>(rim.height_at(batch.x[i], batch.y[i]));
 }
 
-// The nearer to the hole, the more a point of the rim counts.
-void weigh_points(HoleCase& hole) {
+// Measures how far the points lie below the rim.
+void measure_point_depths(const RimSurface& rim, std::vector<HolePoint>& points) {
+  RimHeights batch;
+  for (std::size_t first = 0; first < points.size(); first += kTogether) {
+    const std::size_t size = std::min(kTogether, points.size() - first);
+    for (std::size_t i = 0; i < size; ++i) {
+      batch.x[i] = points[first + i].x;
+      batch.y[i] = points[first + i].y;
+    }
+    measure_heights(rim, size, batch);
+    for (std::size_t i = 0; i < size; ++i)
+      points[first + i].depth = batch.height[i] - points[first + i].z;
+  }
+}
+
+// The cells of the members.
+RimArea area_of(const HoleCase& hole) {
   const CellBox box = hole.box();
   const GridGeometry& geometry = hole.grid().geometry;
-  const double half = geometry.cell_size() / 2;
-  const Position2 low = geometry.centre_of(box.low), high = geometry.centre_of(box.high);
-  in_batches(
-      hole.workspace.points, [&](PointBatch& batch) { measure_weights(low, high, half, batch); },
-      [](HolePoint& p, float weight) { p.weight = weight; });
+  return {geometry.centre_of(box.low), geometry.centre_of(box.high), geometry.cell_size() / 2};
 }
 
 // Fits the rim, and measures the depth that a fifth of the floor's points exceed.
 bool measure_depth(HoleCase& hole) {
-  weigh_points(hole);
-  if (!fit_rim(hole.workspace.points, hole.params.least_depth, hole.input.origins.known(),
-               hole.workspace.rim_points, hole.rim))
+  if (!fit_rim(hole.workspace.points, area_of(hole), hole.params.least_depth,
+               hole.input.origins.known(), hole.workspace.rim_points, hole.rim))
     return false;
+  measure_point_depths(hole.rim, hole.workspace.points);
   // Of the floor: deep ones, and how many are not.
   std::vector<float>& depths = hole.workspace.values;
   depths.clear();
   std::size_t shallow = 0;
-  in_batches(
-      hole.workspace.points, [&hole](PointBatch& batch) { measure_heights(hole.rim, batch); },
-      [&](HolePoint& p, float height) {
-        p.depth = height - p.z;
-        if (p.zone != HoleZone::kFloor) return;
-        if (static_cast<double>(p.depth) >= hole.params.mean_depth) {
-          depths.push_back(p.depth);
-        } else {
-          ++shallow;
-        }
-      });
+  for (const HolePoint& p : hole.workspace.points) {
+    if (p.zone != HoleZone::kFloor) continue;
+    if (static_cast<double>(p.depth) >= hole.params.mean_depth) {
+      depths.push_back(p.depth);
+    } else {
+      ++shallow;
+    }
+  }
   // Four fifths of all are less deep.
   const std::size_t less = (depths.size() + shallow) * 4 / 5;
   if (less < shallow || depths.empty()) return false;
@@ -475,9 +470,6 @@ bool grow(HoleCase& hole) {
     ++workspace.all[slot];
     if (p.depth >= 0.5 * hole.depth) ++workspace.deep[slot];
   }
-  clear_zones(hole);
-  for (const std::int32_t slot : workspace.members)
-    workspace.zone[static_cast<std::size_t>(slot)] = HoleZone::kFloor;
   const std::size_t members = workspace.members.size();
   for (std::size_t next = 0; next < workspace.members.size(); ++next) {
     const auto slot = static_cast<std::size_t>(workspace.members[next]);
@@ -485,17 +477,21 @@ bool grow(HoleCase& hole) {
       if (workspace.zone[near] == HoleZone::kFloor || workspace.deep[near] == 0) return;
       if (workspace.deep[near] < kDeepShare * workspace.all[near]) return;
       if (holds_thing(hole.cells, near)) return;
-      workspace.zone[near] = HoleZone::kFloor;
+      set_zone(HoleZone::kFloor, near, workspace);
       workspace.members.push_back(static_cast<std::int32_t>(near));
     });
   }
-  mark_zones(hole);
-  for (HolePoint& p : workspace.points) {
+  for (const HolePoint& p : workspace.points) {
     const auto slot = static_cast<std::size_t>(p.slot);
     workspace.deep[slot] = workspace.all[slot] = 0;
-    p.zone = workspace.zone[slot] == HoleZone::kFar ? HoleZone::kRim : workspace.zone[slot];
   }
-  return workspace.members.size() > members;
+  if (workspace.members.size() == members) return false;
+  mark_zones(hole, members);
+  for (HolePoint& p : workspace.points) {
+    const HoleZone zone = workspace.zone[static_cast<std::size_t>(p.slot)];
+    p.zone = zone == HoleZone::kFar ? HoleZone::kRim : zone;
+  }
+  return true;
 }
 
 /// What is met first on the way out of a hole.
@@ -728,7 +724,8 @@ bool mark_deeper(const HoleSearch& search, std::size_t members, double bar) {
                    [&](std::int32_t member) { return depth(member) >= deepest; }))
     return false;
   std::for_each(workspace.members.begin(), last, [&](std::int32_t member) {
-    if (depth(member) >= bar) workspace.candidate[static_cast<std::size_t>(member)] = kDeeperCell;
+    if (depth(member) >= bar)
+      workspace.deeper.add(static_cast<std::size_t>(member), cell_of(search.input.grid, member));
   });
   return true;
 }
@@ -740,26 +737,16 @@ void add_hole(HoleSearch& search, const HoleDescription& description) {
   add_cells(search.input.grid, search.workspace.members, search.hole_cells);
 }
 
-// The first candidate of a kind from a slot on; behind the last slot if there is none.
-std::size_t next_of(const std::vector<std::uint8_t>& candidate, std::uint8_t kind,
-                    std::size_t slot) {
-  if (slot == candidate.size()) return slot;
-  const void* found = std::memchr(candidate.data() + slot, kind, candidate.size() - slot);
-  return found == nullptr
-             ? candidate.size()
-             : static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - candidate.data());
-}
-
-// Looks at the candidates of a kind, cells at least `bar` below the rim.
+// Looks at candidates, cells at least `bar` below the rim.
 // \return whether there are deeper parts of what is no hole as a whole
-bool look_at_candidates(HoleSearch& search, std::uint8_t kind, double bar) {
+bool look_at_candidates(HoleSearch& search, HoleCandidates& candidates, double bar) {
   HoleWorkspace& workspace = search.workspace;
   const ElevationGrid& grid = search.input.grid;
   const double deeper = bar + kDeeperStep * search.params.least_depth;
   bool any_deeper = false;
-  for (std::size_t slot = next_of(workspace.candidate, kind, 0); slot < grid.observed();
-       slot = next_of(workspace.candidate, kind, slot)) {
-    collect_members(grid, slot, workspace);
+  for (const std::int32_t slot : candidates.slots) {
+    if (!candidates.left.is_marked(cell_of(grid, slot))) continue;
+    collect_members(grid, slot, candidates.left, workspace.members);
     const std::size_t members = workspace.members.size();
     HoleCase hole{
         search.input, search.params, search.cells, workspace, bar > search.params.least_depth, {}};
@@ -767,12 +754,20 @@ bool look_at_candidates(HoleSearch& search, std::uint8_t kind, double bar) {
     HoleDescription description;
     const bool measured = measure_hole(hole, window);
     const bool found = measured && is_hole(hole, window, description);
-    clear_zones(hole);
+    clear_zones(workspace);
     leave_out(grid, workspace);
     if (found) add_hole(search, description);
-    if (!measured && kind == kFloorCell) any_deeper |= mark_deeper(search, members, deeper);
+    if (!measured && &candidates == &workspace.floor)
+      any_deeper |= mark_deeper(search, members, deeper);
   }
   return any_deeper;
+}
+
+// The cells that are to be looked at again become the candidates, in the order of their slots.
+void go_deeper(const GridGeometry& geometry, HoleWorkspace& workspace) {
+  std::swap(workspace.floor, workspace.deeper);
+  std::sort(workspace.floor.slots.begin(), workspace.floor.slots.end());
+  workspace.deeper.clear(geometry);
 }
 
 }  // namespace
@@ -786,12 +781,10 @@ void find_holes(const HoleInput& input, const HoleParams& params, HoleWorkspace&
   measure_rim(input.field, workspace);
   mark_candidates(input, params, workspace, cells);
   HoleSearch search{input, params, workspace, cells, ground, holes, hole_cells};
-  for (double bar = params.least_depth; look_at_candidates(search, kFloorCell, bar);
-       bar += kDeeperStep * params.least_depth) {
-    // Without branches, so that compilers work on many at once.
-    for (std::uint8_t& kind : workspace.candidate) kind = kind == kDeeperCell ? kFloorCell : kind;
-  }
-  look_at_candidates(search, kEdgeCell, params.least_depth);
+  for (double bar = params.least_depth; look_at_candidates(search, workspace.floor, bar);
+       bar += kDeeperStep * params.least_depth)
+    go_deeper(input.grid.geometry, workspace);
+  look_at_candidates(search, workspace.edges, params.least_depth);
 }
 
 }  // namespace mrpt_terrain

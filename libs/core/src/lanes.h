@@ -70,12 +70,5 @@ MRPT_TERRAIN_LANES bool any_flag(const DoubleLanes& flags) {
   for (const double lane : lanes) any += lane;
   return any > 0.0;
 }
-MRPT_TERRAIN_LANES bool any_of(const MaskLanes& mask) {
-  std::int64_t lanes[kCellLanes];
-  std::memcpy(lanes, &mask, sizeof(lanes));
-  std::int64_t any = 0;
-  for (const std::int64_t lane : lanes) any |= lane;
-  return any != 0;
-}
 
 }  // namespace mrpt_terrain

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "lanes.h"
+#include "lane_parts.h"
 #include "wide_registers.h"
 
 namespace mrpt_terrain {
@@ -25,29 +25,31 @@ constexpr std::size_t kFew = 48;
 using EightPlaces = std::array<Position2, kCellLanes>;
 
 // The first of the farthest points in each of eight directions.
-MRPT_TERRAIN_WIDE_REGISTERS
-void find_extremes(const EightPlaces& direction, const double* x, const double* y, std::size_t n,
-                   EightPlaces& result) {
-  LaneArray to_x, to_y;
+template <class Lanes>
+[[gnu::always_inline]] inline void find_extremes_in(const EightPlaces& direction, const double* x,
+                                                    const double* y, std::size_t n,
+                                                    EightPlaces& result) {
+  std::array<double, kCellLanes> to_x, to_y;
   for (std::size_t k = 0; k < kCellLanes; ++k) {
-    to_x.value[k] = direction[k].x;
-    to_y.value[k] = direction[k].y;
+    to_x[k] = direction[k].x;
+    to_y[k] = direction[k].y;
   }
-  DoubleLanes direction_x, direction_y;
-  load(to_x, direction_x);
-  load(to_y, direction_y);
-  DoubleLanes best = DoubleLanes{} + std::numeric_limits<double>::lowest(), best_x{}, best_y{};
+  const Lanes direction_x = Lanes::from(to_x.data()), direction_y = Lanes::from(to_y.data());
+  Lanes best = Lanes::of(std::numeric_limits<double>::lowest()), best_x{}, best_y{};
   for (std::size_t i = 0; i < n; ++i) {
-    const DoubleLanes along = direction_x * x[i] + direction_y * y[i];
-    best_x = along > best ? DoubleLanes{} + x[i] : best_x;
-    best_y = along > best ? DoubleLanes{} + y[i] : best_y;
-    best = along > best ? along : best;
+    const Lanes along = x[i] * direction_x + y[i] * direction_y;
+    best_x.take_where_less(best, along, Lanes::of(x[i]));
+    best_y.take_where_less(best, along, Lanes::of(y[i]));
+    best.take_where_less(best, along, along);
   }
-  LaneArray result_x, result_y;
-  store(best_x, result_x);
-  store(best_y, result_y);
-  for (std::size_t k = 0; k < kCellLanes; ++k) result[k] = {result_x.value[k], result_y.value[k]};
+  best_x.copy_to(to_x.data());
+  best_y.copy_to(to_y.data());
+  for (std::size_t k = 0; k < kCellLanes; ++k) result[k] = {to_x[k], to_y[k]};
 }
+MRPT_TERRAIN_LANE_FUNCTION(find_extremes,
+                           (const EightPlaces& direction, const double* x, const double* y,
+                            std::size_t n, EightPlaces& result),
+                           (direction, x, y, n, result))
 
 // Extreme points in eight directions, counter-clockwise.
 void find_octagon(const OrientedBoxWorkspace& workspace, std::vector<Position2>& polygon) {

@@ -130,6 +130,8 @@ bool PassedBeams::divide(std::size_t slot_a, std::size_t slot_b) const {
   const CellIndex a = grid_.geometry.index_of(grid_.cell[slot_a]);
   const CellIndex b = grid_.geometry.index_of(grid_.cell[slot_b]);
   const CellIndex offset{b.l - a.l, b.w - a.w};
+  const bool touching = std::abs(offset.l) <= 1 && std::abs(offset.w) <= 1;
+  if (touching && parts_touch(of_a, of_b, offset)) return false;
   const Position2 centre = grid_.geometry.centre_of(a);
   const double beam_x = centre.x - static_cast<double>(sensor_[0]);
   const double beam_y = centre.y - static_cast<double>(sensor_[1]);
@@ -140,8 +142,6 @@ bool PassedBeams::divide(std::size_t slot_a, std::size_t slot_b) const {
   const double least = kNoise + kColumns * range + part;
   // Most of what is asked for: parts lie up to 0.375 of a cell off its centre along each axis.
   if (!(across(cell * offset.l, cell * offset.w) + 1.07 * cell >= least)) return false;
-  const bool touching = std::abs(offset.l) <= 1 && std::abs(offset.w) <= 1;
-  if (touching && parts_touch(of_a, of_b, offset)) return false;
   const NearestParts nearest(of_a, of_b, offset);
   const double dx = part * (nearest.b.l - nearest.a.l), dy = part * (nearest.b.w - nearest.a.w);
   if (!(across(dx, dy) >= least)) return false;

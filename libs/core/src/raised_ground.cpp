@@ -40,33 +40,24 @@ struct Blocks {
   const GridGeometry& geometry;
   int cells;  ///< along a side of a block
   int rows, columns;
+  Divisor by_cells;
 
   Blocks(const GridGeometry& of, double side)
       : geometry(of),
         cells(std::max(1, static_cast<int>(std::lround(side / of.cell_size())))),
         rows((of.cells_l() + cells - 1) / cells),
-        columns((of.cells_w() + cells - 1) / cells) {}
+        columns((of.cells_w() + cells - 1) / cells),
+        by_cells(cells) {}
   [[nodiscard]] std::size_t size() const {
     return static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
   }
   [[nodiscard]] std::size_t at(int row, int column) const {
     return static_cast<std::size_t>(row * columns + column);
   }
-  [[nodiscard]] std::size_t of(CellIndex cell) const { return at(cell.l / cells, cell.w / cells); }
-};
-
-void sum_ground(const PointsView& points, const FieldPoints& field, const PointSlots& point_slots,
-                std::size_t slots, std::vector<RaisedGroundWorkspace::Sums>& sums) {
-  sums.assign(slots, {});
-  for (std::size_t i = 0; i < points.size; ++i) {
-    if (point_slots[i] < 0 || field.support[i] != Support::kGround) continue;
-    RaisedGroundWorkspace::Sums& to = sums[static_cast<std::size_t>(point_slots[i])];
-    to.x += points.x[i];
-    to.y += points.y[i];
-    to.z += points.z[i];
-    to.n += 1.0F;
+  [[nodiscard]] std::size_t of(CellIndex cell) const {
+    return at(by_cells.quotient_of(cell.l), by_cells.quotient_of(cell.w));
   }
-}
+};
 
 void find_blocks(const ElevationGrid& grid, const Blocks& blocks,
                  std::vector<std::int32_t>& block) {
@@ -76,24 +67,23 @@ void find_blocks(const ElevationGrid& grid, const Blocks& blocks,
 }
 
 // Counting sort of the cells' mean points.
-void sort_samples(const ElevationGrid& grid, const GroundSegmentation& ground, const Blocks& blocks,
-                  RaisedGroundWorkspace& workspace) {
+void sort_samples(const FieldWorkspace& field, const GroundSegmentation& ground,
+                  const Blocks& blocks, RaisedGroundWorkspace& workspace) {
+  const std::vector<FieldCellSums>& sums = field.sums;
   const auto is_sample = [&](std::size_t slot) {
-    return workspace.sums[slot].n > 0.0F && ground.rule[slot] != GroundRule::kLow;
+    return sums[slot].on > 0 && ground.rule[slot] != GroundRule::kLow;
   };
   workspace.first.assign(blocks.size() + 1, 0);
-  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
+  for (std::size_t slot = 0; slot < sums.size(); ++slot) {
     if (is_sample(slot)) ++workspace.first[static_cast<std::size_t>(workspace.block[slot]) + 1];
   }
   for (std::size_t b = 1; b < workspace.first.size(); ++b)
     workspace.first[b] += workspace.first[b - 1];
   workspace.samples.resize(static_cast<std::size_t>(workspace.first.back()));
-  for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
+  for (std::size_t slot = 0; slot < sums.size(); ++slot) {
     if (!is_sample(slot)) continue;
-    const RaisedGroundWorkspace::Sums& from = workspace.sums[slot];
     std::int32_t& next = workspace.first[static_cast<std::size_t>(workspace.block[slot])];
-    workspace.samples[static_cast<std::size_t>(next++)] = {from.x / from.n, from.y / from.n,
-                                                           from.z / from.n};
+    workspace.samples[static_cast<std::size_t>(next++)] = sums[slot].mean_on_ground();
   }
   for (std::size_t b = workspace.first.size() - 1; b > 0; --b)
     workspace.first[b] = workspace.first[b - 1];
@@ -294,8 +284,9 @@ void fit_planes(const FieldWorkspace& field, const Blocks& blocks, const RaisedG
 }
 
 // Looks in four directions for the first observed cell within two cells.
-void look_at_edges(const ElevationGrid& grid, const GroundSegmentation& ground,
-                   const RaisedGroundWorkspace& workspace, FieldCells& cells) {
+void look_at_edges(const ElevationGrid& grid, const FieldWorkspace& field,
+                   const GroundSegmentation& ground, const RaisedGroundWorkspace& workspace,
+                   FieldCells& cells) {
   for (std::size_t slot = 0; slot < grid.observed(); ++slot) {
     if (cells.raised[slot] == 0) continue;
     const CellIndex at = grid.geometry.index_of(grid.cell[slot]);
@@ -308,9 +299,9 @@ void look_at_edges(const ElevationGrid& grid, const GroundSegmentation& ground,
         other = grid.slot_at({at.l + k * direction.l, at.w + k * direction.w});
       if (other == kUnobserved) continue;
       const auto o = static_cast<std::size_t>(other);
-      const RaisedGroundWorkspace::Sums& sums = workspace.sums[o];
-      if (!ground.is_ground(o) || cells.raised[o] > 0 || sums.n == 0.0F) continue;
-      const float beside = (sums.z / sums.n) - plane.height_at(sums.x / sums.n, sums.y / sums.n);
+      if (!ground.is_ground(o) || cells.raised[o] > 0 || cells.on[o] == 0) continue;
+      const GroundSample mean = field.sums[o].mean_on_ground();
+      const float beside = mean.z - plane.height_at(mean.x, mean.y);
       ++(beside < kSharp * height ? cells.sharp_edges : cells.smooth_edges)[slot];
     }
   }
@@ -347,9 +338,8 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
   workspace.height.assign(points.size, 0.0F);
   if (field.surface.height.empty()) return;
   const Blocks blocks(grid.geometry, params.block);
-  sum_ground(points, field.points, point_slots, n, workspace.sums);
   find_blocks(grid, blocks, workspace.block);
-  sort_samples(grid, ground, blocks, workspace);
+  sort_samples(field, ground, blocks, workspace);
   fit_planes(field, blocks, params, workspace);
   const auto least = static_cast<float>(params.least_height);
   const auto sigmas = static_cast<float>(params.sigmas);
@@ -369,7 +359,7 @@ void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
     cells.raised_high[slot] = std::max(cells.raised_high[slot], height);
     ++cells.raised[slot];
   }
-  look_at_edges(grid, ground, workspace, cells);
+  look_at_edges(grid, field, ground, workspace, cells);
   find_level_cells(grid, ground, workspace, least, cells);
 }
 

@@ -52,7 +52,7 @@ float turn_from(float from, float to) {
   return turn < -0.5F * kTurn ? turn + kTurn : turn;
 }
 
-bool sector_of(const FaceSlopeWorkspace& workspace, Sector& sector) {
+bool sector_of(FaceSlopeWorkspace& workspace, Sector& sector) {
   if (workspace.beams.empty()) return false;
   const BeamPoints& points = workspace.points;
   double dx = 0.0, dy = 0.0;
@@ -65,8 +65,8 @@ bool sector_of(const FaceSlopeWorkspace& workspace, Sector& sector) {
   sector.low = std::numeric_limits<float>::max();
   sector.high = std::numeric_limits<float>::lowest();
   for (const FaceBeam& beam : workspace.beams) {
-    const auto i = static_cast<std::size_t>(beam.point);
-    const float turn = turn_from(sector.middle, std::atan2(points.dy[i], points.dx[i]));
+    const float azimuth = azimuth_of(static_cast<std::size_t>(beam.point), workspace);
+    const float turn = turn_from(sector.middle, azimuth);
     sector.before = std::min(sector.before, turn);
     sector.after = std::max(sector.after, turn);
     sector.low = std::min(sector.low, beam.elevation);
@@ -245,6 +245,13 @@ struct GroundFit {
 
 }  // namespace
 
+float azimuth_of(std::size_t point, FaceSlopeWorkspace& workspace) {
+  float& azimuth = workspace.azimuth[point];
+  if (azimuth == kUnknownAzimuth)
+    azimuth = std::atan2(workspace.points.dy[point], workspace.points.dx[point]);
+  return azimuth;
+}
+
 // Columns are few.
 void sort_beams(FaceSlopeWorkspace& workspace) {
   const std::vector<FaceBeam>& beams = workspace.beams;
@@ -270,8 +277,7 @@ void add_beams_beside(const BeamOrigins& origins, const FaceSurroundings& around
   if (!sector_of(workspace, sector)) return;
   // Columns are those of azimuths about the middle of the face, so that none is at their end.
   for (FaceBeam& beam : workspace.beams) {
-    const auto i = static_cast<std::size_t>(beam.point);
-    const float azimuth = std::atan2(workspace.points.dy[i], workspace.points.dx[i]);
+    const float azimuth = azimuth_of(static_cast<std::size_t>(beam.point), workspace);
     beam.column = column_of(turn_from(sector.middle, azimuth));
   }
   sector.farthest = static_cast<float>(std::hypot(around.place.x() - double{origin[0]},

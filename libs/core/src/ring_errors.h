@@ -13,6 +13,12 @@ inline constexpr float kColumn = 0.0087F;
 /// tilted, radians: less than half of the narrowest usual beam spacing.
 inline constexpr float kRingGap = 0.0026F;
 
+/// Azimuth of a beam that has not been asked for yet.
+inline constexpr float kUnknownAzimuth = 10.0F;
+/// Azimuth of the beam to a point of the thing, radians. It is asked for several times, and takes
+/// long.
+[[nodiscard]] float azimuth_of(std::size_t point, FaceSlopeWorkspace& workspace);
+
 /// Adds the beams to points of the ground beside a face to those of the face.
 ///
 /// They lie within a quarter of a right angle beside the face, at about the elevations at which it

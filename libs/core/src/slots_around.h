@@ -37,15 +37,39 @@ void for_slots_around(const ElevationGrid& grid, std::size_t slot, int reach, F&
   for_slots_around(grid, grid.geometry.index_of(grid.cell[slot]), reach, f);
 }
 
+/// Moves by a number of cells in so many equal steps, each to the nearest cell, of two as near to
+/// the one farther on.
+class CellSteps {
+ public:
+  CellSteps(int cells, int steps)
+      : sign_(cells < 0 ? -1 : 1),
+        twice_cells_(2 * std::abs(cells)),
+        twice_steps_(2 * steps),
+        rest_(steps) {}
+  /// Requires that there are no more cells than steps.
+  void next() {
+    rest_ += twice_cells_;
+    const bool moves = rest_ >= twice_steps_;
+    at_ += moves ? sign_ : 0;
+    rest_ -= moves ? twice_steps_ : 0;
+  }
+  [[nodiscard]] int at() const { return at_; }
+
+ private:
+  int sign_, twice_cells_, twice_steps_, rest_;
+  int at_ = 0;
+};
+
 /// Whether one of the observed slots on the line between two cells is such a one; theirs do not
 /// count.
 template <class Predicate>
 bool any_slot_between(const ElevationGrid& grid, CellIndex a, CellIndex b, Predicate&& is_such) {
   const int steps = std::max(std::abs(a.l - b.l), std::abs(a.w - b.w));
+  CellSteps l(b.l - a.l, steps), w(b.w - a.w, steps);
   for (int k = 1; k < steps; ++k) {
-    const double share = static_cast<double>(k) / steps;
-    const Slot slot = grid.slot_within({a.l + static_cast<int>(std::lround(share * (b.l - a.l))),
-                                        a.w + static_cast<int>(std::lround(share * (b.w - a.w)))});
+    l.next();
+    w.next();
+    const Slot slot = grid.slot_within({a.l + l.at(), a.w + w.at()});
     if (slot != kUnobserved && is_such(static_cast<std::size_t>(slot))) return true;
   }
   return false;

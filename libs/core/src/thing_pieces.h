@@ -23,11 +23,16 @@ inline std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t slot
   return slot;
 }
 
+/// Makes one thing of two, each given by its root.
+/// \return its root
+inline std::int32_t unite_roots(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
+  parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  return std::min(a, b);
+}
+
 /// Makes one thing of those of two slots.
 inline void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
-  a = root_of(parent, a);
-  b = root_of(parent, b);
-  parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  unite_roots(parent, root_of(parent, a), root_of(parent, b));
 }
 
 /// Lowest and highest point of a thing in a cell, metres above the ground.

@@ -34,14 +34,11 @@ void sum_things(const PointsView& points, DescriptionWorkspace& workspace,
   const FieldPoints& field = workspace.field.points;
   const Clusters& clusters = description.clusters;
   workspace.cluster_sums.assign(clusters.size(), ClusterSums{});
-  for (std::size_t i = 0; i < points.size; ++i) {
-    const std::int32_t slot = workspace.cluster_slots[i];
-    if (slot < 0) continue;
-    const std::int32_t cluster = clusters.cluster_of[static_cast<std::size_t>(slot)];
-    if (cluster == kNoCluster) continue;
-    ClusterSums& sums = workspace.cluster_sums[static_cast<std::size_t>(cluster)];
+  for (const ClusterPoint& member : workspace.cluster_points) {
+    const auto i = static_cast<std::size_t>(member.point);
+    ClusterSums& sums = workspace.cluster_sums[static_cast<std::size_t>(member.cluster)];
     sums.points.add(points.x[i], points.y[i], points.z[i]);
-    const auto cell = static_cast<std::size_t>(slot);
+    const auto cell = static_cast<std::size_t>(workspace.cluster_slots[i]);
     const bool hole = description.ground.rule[cell] == GroundRule::kLow;
     const float raised = workspace.raised_ground.height[i];
     const float height =
@@ -104,13 +101,19 @@ void measure_steps(const Description& description, IndexRange slots, std::vector
   thing.highest_step = static_cast<double>(*(steps.end() - 1 - tail));
 }
 
-// The points of all things.
+// Brings the points of each thing together.
 void gather_all(DescriptionWorkspace& workspace, const Description& description) {
-  workspace.points_wanted.clear();
+  IndexRows& rows = workspace.points_of;
+  rows.first.assign(1, 0);
   for (const ClusterDescription& thing : description.things)
-    workspace.points_wanted.push_back(thing.points);
-  gather_points(workspace.cluster_slots, description.clusters, workspace.points_wanted,
-                workspace.points_of);
+    rows.first.push_back(rows.first.back() + thing.points);
+  rows.items.resize(workspace.cluster_points.size());
+  std::vector<std::int32_t>& next = workspace.points_wanted;
+  next.assign(rows.first.begin(), rows.first.end());
+  for (const ClusterPoint& member : workspace.cluster_points) {
+    std::int32_t& place = next[static_cast<std::size_t>(member.cluster)];
+    rows.items[static_cast<std::size_t>(place++)] = member.point;
+  }
 }
 
 // The points of a thing for its slope: where some are remembered, only those that the scan has

@@ -25,6 +25,10 @@ class CellBits {
   void mark(CellIndex cell) { word_of(cell) |= bit_of(cell); }
   void unmark(CellIndex cell) { word_of(cell) &= ~bit_of(cell); }
 
+  [[nodiscard]] bool is_marked(CellIndex cell) const {
+    return (bits_[row_of(cell.l) + static_cast<std::size_t>(cell.w) / 64] & bit_of(cell)) != 0;
+  }
+
   /// Calls f with every marked cell up to `reach` cells away along each axis, row by row. It may
   /// unmark the cell that it is called with.
   template <class F>

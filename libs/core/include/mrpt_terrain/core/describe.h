@@ -162,6 +162,12 @@ struct Description {
   ProjectionCounts projection;
 };
 
+/// Field mode: a point that is part of a cluster.
+struct ClusterPoint {
+  std::int32_t point;  ///< in the scan
+  std::int32_t cluster;
+};
+
 /// Field mode: what is summed over the points of a cluster. Metres.
 struct ClusterSums {
   MomentSums points;
@@ -193,8 +199,9 @@ struct DescriptionWorkspace {
   std::vector<std::uint8_t> slot_wanted;
   LabelWorkspace labels;
   PointSlots point_slots;
-  PointSlots cluster_slots;               ///< field mode, like `cluster_sums`
-  std::vector<ClusterSums> cluster_sums;  ///< per cluster
+  PointSlots cluster_slots;  ///< field mode, like `cluster_points` and `cluster_sums`
+  std::vector<ClusterPoint> cluster_points;  ///< in the order of the scan
+  std::vector<ClusterSums> cluster_sums;     ///< per cluster
   std::vector<Moments> cluster_moments;
   std::vector<std::int32_t> points_wanted;
   std::vector<std::int32_t> slope_wanted;  ///< fused grids only, like `scan_sums`

@@ -42,13 +42,20 @@ struct RingPart {
   double along = 0.0;                             ///< cosine of beam and normal of the ground
 };
 
+/// Lowest and highest beam to a face in a column, radians.
+struct ColumnExtent {
+  float low, high;
+};
+
 /// Scratch memory of `estimate_face_slope`.
 struct FaceSlopeWorkspace {
   BeamPoints points;
-  std::vector<float> x, y, z;        ///< of the sample
+  std::vector<float> azimuth;  ///< per point: of its beam where that has been asked for, radians
+  std::vector<float> x, y, z;  ///< of the sample
   std::vector<std::int32_t> rest;    ///< points that are not on the face
   std::vector<std::uint8_t> beyond;  ///< per point: 1: on another surface
   std::vector<FaceBeam> beams;
+  std::vector<ColumnExtent> columns;
   std::vector<FaceBeam> beams_by_column;  ///< while beams are sorted...
   std::vector<std::int32_t> first_beam;   ///< ...and where those of each column begin
   std::vector<FaceRing> rings;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "mrpt_terrain/core/elevation_grid.h"
@@ -65,6 +66,25 @@ struct FieldCells {
   [[nodiscard]] std::size_t size() const { return ground.size(); }
 };
 
+/// Mean point of the ground in a cell.
+struct GroundSample {
+  float x = 0.0F, y = 0.0F, z = 0.0F;
+};
+
+/// Sums over the points of a cell.
+struct FieldCellSums {
+  float x = 0.0F, y = 0.0F, z = 0.0F;  ///< of the points on the ground, frame of the scan
+  float floor = 0.0F;                  ///< heights of the points on and below the ground
+  float low = std::numeric_limits<float>::max(), high = 0.0F;  ///< heights of the points above it
+  std::int32_t on = 0, above = 0, below = 0;                   ///< how many points they are
+
+  /// Mean point on the ground. Requires one.
+  [[nodiscard]] GroundSample mean_on_ground() const {
+    const auto n = static_cast<float>(on);
+    return {x / n, y / n, z / n};
+  }
+};
+
 /// Scratch memory of field mode's ground stages.
 struct FieldWorkspace {
   GroundSurfaceWorkspace surface_workspace;
@@ -73,6 +93,7 @@ struct FieldWorkspace {
   std::vector<float> threshold;
   std::vector<Support> support;  ///< in the order of the surface's cells
   FieldPoints points;
+  std::vector<FieldCellSums> sums;  ///< per slot of the grid
 };
 
 /// Finds the ground reference and labels the points by it.
@@ -81,10 +102,12 @@ void find_field_ground(const ScanView& scan, const GroundSurfaceParams& surface,
 
 /// Counts the points of every cell by their support. A cell is non-ground (C_N) if it holds a point
 /// above or below the ground.
+/// \param points of the scan
+/// \param[in,out] workspace what `find_field_ground` found of the scan; the sums are filled in
 /// \param point_slots of the grid that `build_elevation_grid` made of the same scan
 /// \param[out] ground rule kHigh or kLow in C_N; h_mean above the reference
-void measure_field_cells(const FieldWorkspace& workspace, const ElevationGrid& grid,
-                         const PointSlots& point_slots, FieldCells& cells,
-                         GroundSegmentation& ground);
+void measure_field_cells(const PointsView& points, FieldWorkspace& workspace,
+                         const ElevationGrid& grid, const PointSlots& point_slots,
+                         FieldCells& cells, GroundSegmentation& ground);
 
 }  // namespace mrpt_terrain

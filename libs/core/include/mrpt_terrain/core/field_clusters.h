@@ -98,7 +98,8 @@ struct StripWorkspace {
 
 /// Scratch memory of `find_field_clusters`.
 struct FieldClusterWorkspace {
-  CellBits members, raised;          ///< cells of things so far; of these, ground that is raised
+  CellBits members;                  ///< cells of things so far
+  CellBits flat, raised;             ///< of these, what is no upright surface, and raised ground
   std::vector<std::int32_t> parent;  ///< per slot: another slot of the same thing, or itself
   std::vector<std::int32_t> cells_of;
   std::vector<std::int32_t> points_of;

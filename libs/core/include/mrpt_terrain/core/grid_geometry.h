@@ -26,6 +26,27 @@ enum class CellId : std::int32_t {};
 
 [[nodiscard]] constexpr std::int32_t value_of(CellId id) { return static_cast<std::int32_t>(id); }
 
+/// Divides whole numbers from 0 to 2^31 - 1 by one that stays the same, by a multiplication: exact,
+/// and several times as fast as a division.
+class Divisor {
+ public:
+  Divisor() = default;
+  /// \param divisor > 0
+  explicit Divisor(std::int32_t divisor) {
+    // The factor exceeds 2^shift / divisor by 1 at most; what that adds to a quotient is less than
+    // 2^31 / 2^shift, and so than 1 / divisor.
+    while ((std::int64_t{1} << (shift_ - 31)) < divisor) ++shift_;
+    factor_ = (std::uint64_t{1} << shift_) / static_cast<std::uint64_t>(divisor) + 1;
+  }
+  [[nodiscard]] std::int32_t quotient_of(std::int32_t number) const {
+    return static_cast<std::int32_t>(static_cast<std::uint64_t>(number) * factor_ >> shift_);
+  }
+
+ private:
+  unsigned shift_ = 31;
+  std::uint64_t factor_ = (std::uint64_t{1} << 31) + 1;
+};
+
 /// Where the cells lie: the only place that converts between metres and cells.
 ///
 /// The grid covers [-length/2, length/2) x [-width/2, width/2) about the frame's origin, divided
@@ -89,7 +110,8 @@ class GridGeometry {
     return CellId{(cell.l + 1) * stride() + cell.w + 1};
   }
   [[nodiscard]] CellIndex index_of(CellId id) const {
-    return {value_of(id) / stride() - 1, value_of(id) % stride() - 1};
+    const std::int32_t row = by_stride_.quotient_of(value_of(id));
+    return {row - 1, value_of(id) - row * stride() - 1};
   }
 
   /// Distance of the edges from the origin, metres.
@@ -110,6 +132,7 @@ class GridGeometry {
   double cells_per_metre_ = 0.0;
   int cells_l_ = 0;
   int cells_w_ = 0;
+  Divisor by_stride_{2};
 };
 
 }  // namespace mrpt_terrain

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mrpt_terrain/core/beam_plane.h"
+#include "mrpt_terrain/core/cell_bits.h"
 #include "mrpt_terrain/core/clusters.h"
 #include "mrpt_terrain/core/field_cells.h"
 #include "mrpt_terrain/core/grid_geometry.h"
@@ -123,7 +124,6 @@ struct HolePoint {
   float x, y, z;       ///< metres
   std::int32_t index;  ///< in the scan
   std::int32_t slot;   ///< of the grid
-  float weight;        ///< in the rim, 0 to 1
   float depth;         ///< metres below the rim
   HoleZone zone;
 };
@@ -143,7 +143,7 @@ struct RingPoint {
 struct RimPoints {
   std::size_t size = 0;
   std::vector<double> u, v, z;
-  std::vector<double> weight;
+  std::vector<double> weight;   ///< 0 to 1
   std::vector<double> counted;  ///< weight in the present round; 0 for points that do not count
   std::vector<double> low;      ///< depth below the surface so far
 
@@ -151,13 +151,29 @@ struct RimPoints {
     if (n <= u.size()) return;
     for (auto* values : {&u, &v, &z, &weight, &counted, &low}) values->resize(n);
   }
-  void add(double pu, double pv, double pz, double w, bool in_first) {
+  /// The weight is still to come.
+  /// \param share of it that counts in the first round: 1, or 0
+  void add(double pu, double pv, double pz, double share) {
     u[size] = pu;
     v[size] = pv;
     z[size] = pz;
-    weight[size] = w;
-    counted[size] = in_first ? w : 0.0;
+    counted[size] = share;
     ++size;
+  }
+};
+
+/// Cells that may be of a hole.
+struct HoleCandidates {
+  std::vector<std::int32_t> slots;  ///< of all that have been added
+  CellBits left;                    ///< those that are still to be looked at
+
+  void clear(const GridGeometry& geometry) {
+    slots.clear();
+    left.clear(geometry);
+  }
+  void add(std::size_t slot, CellIndex cell) {
+    slots.push_back(static_cast<std::int32_t>(slot));
+    left.mark(cell);
   }
 };
 
@@ -167,10 +183,13 @@ struct HoleWorkspace {
   std::vector<RimMean> around;          ///< per cell of the rim's level
   std::vector<float> height;            ///< per slot of the surface: low height above level 3
   std::vector<RimBase> base;            ///< per slot of the surface
-  std::vector<std::uint8_t> candidate;  ///< per slot of the grid: 1 cell of floor, 2 of an edge
+  HoleCandidates floor, edges;          ///< cells of floor, and of the edges of holes
+  HoleCandidates deeper;                ///< cells of floor that are to be looked at again
   std::vector<HoleZone> zone;           ///< per slot of the grid; kFar between holes
+  std::vector<std::int32_t> zoned;      ///< slots that have another one
   std::vector<std::int32_t> members;    ///< slots of one hole
   std::vector<std::int32_t> deep, all;  ///< per slot: deep points and points, where looked at
+  std::vector<std::size_t> places;      ///< of points, in the order of the surface's cells
   std::vector<HolePoint> points;        ///< in and around the members
   RimPoints rim_points;
   std::vector<RingPoint> rings;          ///< the same points by azimuth

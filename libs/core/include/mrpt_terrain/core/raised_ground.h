@@ -56,11 +56,6 @@ struct GroundAround {
   }
 };
 
-/// Mean point of the ground in a cell.
-struct GroundSample {
-  float x = 0.0F, y = 0.0F, z = 0.0F;
-};
-
 /// Samples that a plane is fitted to, about its centre in x and y; a multiple of the lanes that are
 /// worked on side by side.
 struct GroundWindow {
@@ -81,10 +76,6 @@ struct GroundWindow {
 
 /// Scratch memory of `find_raised_ground`, and what later stages need of it.
 struct RaisedGroundWorkspace {
-  struct Sums {
-    float x = 0.0F, y = 0.0F, z = 0.0F, n = 0.0F;
-  };
-  std::vector<Sums> sums;             ///< per slot: of its points on the ground
   std::vector<std::int32_t> block;    ///< per slot: in which block it lies
   std::vector<std::int32_t> first;    ///< per block: of its samples; one more at the end
   std::vector<GroundSample> samples;  ///< by block
@@ -105,6 +96,7 @@ struct RaisedGroundWorkspace {
 /// its plane by more, so that less stands out of it.
 /// Cells whose highest point is above the reference, but not above that plane by `least_height`,
 /// are `level`: there it is the reference that lies too low, as at the rim of a hole.
+/// \param field with the sums that `measure_field_cells` made of the same points
 /// \param[in,out] cells `raised`, `raised_low`, `raised_high`, edges and `level` are filled in
 void find_raised_ground(const PointsView& points, const FieldWorkspace& field,
                         const ElevationGrid& grid, const GroundSegmentation& ground,
