@@ -357,12 +357,14 @@ TEST(FieldCosts, OracleGridOfTheGroundAlone) {
   int compared = 0, mixed = 0;
   for (std::size_t slot = 0; slot < world.costs.size(); ++slot) {
     const CellIndex cell = description.grid.geometry.index_of(description.grid.cell[slot]);
-    bool known = description.field.deck[slot] < 0;
+    bool known = true;
     for (int l = -2; l <= 2; ++l) {
       for (int w = -2; w <= 2; ++w) {
         const CellIndex near{cell.l + l, cell.w + w};
-        known = known && (description.grid.slot_at(near) == kUnobserved) ==
-                             (grid.slot_at(near) == kUnobserved);
+        const Slot other = description.grid.slot_at(near);
+        known =
+            known && (other == kUnobserved) == (grid.slot_at(near) == kUnobserved) &&
+            (other == kUnobserved || description.field.deck[static_cast<std::size_t>(other)] < 0);
       }
     }
     if (!known) continue;
