@@ -250,6 +250,18 @@ TEST(LinkedThings, TwoWallsThatAreAlikeAndOppositeEachOtherCarryADeck) {
     EXPECT_TRUE(all_apart(street->scene.things_at(street->places)));
 }
 
+// Of each wall the side towards the other one and its near end are seen, which turns the directions
+// of both by 5 deg, against each other.
+TEST(LinkedThings, TheNearEndsOfAbutmentsDoNotTurnThem) {
+  Scene scene;
+  for (const double side : {-1.0, 1.0}) {
+    const double face = side > 0.0 ? 2.0 : -2.2, end = side > 0.0 ? 2.2 : -2.6;
+    scene.thing({3.0, 5.4, face, face + 0.2}, 0.05F, 2.0F);
+    scene.thing({3.0, 3.2, end, end + 0.4}, 0.05F, 2.0F);
+  }
+  EXPECT_TRUE(all_one(scene.things_at({{4.1, -2.1}, {4.1, 2.1}})));
+}
+
 // The second wall ends opposite the middle of the first.
 TEST(LinkedThings, PartOfAnAbutmentMayBeHidden) {
   Scene scene;
