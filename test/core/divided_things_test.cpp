@@ -179,6 +179,13 @@ TEST(DividedThings, KerbsThatMeetAreTwo) {
   EXPECT_TRUE(worlds::all_one(kerbs(meeting, false).things_at(places))) << "no edge is sharp";
 }
 
+// Two pieces that are too short for strips touch the first kerb, with a quarter of all cells.
+TEST(DividedThings, KerbsMayHaveShortPieces) {
+  const std::vector<worlds::Rect> all{
+      {4.0, 8.0, -0.2, 0.2}, {5.8, 6.2, 0.2, 3.0}, {4.2, 4.6, -1.4, -0.2}, {7.4, 7.8, -1.4, -0.2}};
+  EXPECT_TRUE(worlds::all_apart(kerbs(all).things_at({{4.3, 0.1}, {6.1, 2.5}})));
+}
+
 // Its cells are more than a strip is wide.
 TEST(DividedThings, AWideKerbIsOneStrip) {
   const auto things = [](double width) {

@@ -206,7 +206,8 @@ TEST(LinkedThings, ACurbGoesOnBetweenTwoRings) {
   interrupted.scene.ground(at(5.1, 2.1));
   EXPECT_TRUE(all_apart(interrupted.things())) << "the ground is seen between";
   EXPECT_TRUE(all_apart(Curb(5.8, 0.2F).things())) << "not as high";
-  EXPECT_TRUE(all_apart(Curb(7.0).things())) << "too far";
+  EXPECT_TRUE(all_one(Curb(8.0).things()));
+  EXPECT_TRUE(all_apart(Curb(9.0).things())) << "too far";
 }
 
 /// A curb 0.12 m high along x at y = 2, and something small at x, y beside its end at x = 6. The
