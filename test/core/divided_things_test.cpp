@@ -95,24 +95,49 @@ TEST(DividedThings, WhatStandsBehindIsNotDividedByBeams) {
   EXPECT_TRUE(are_one(things_of(TwoPosts(5.0, -0.2, 0.3, 0.05).seen())));
 }
 
-/// A lawn of 4 m x 4 m and 0.2 m height with something in its middle.
-worlds::CellScene lawn() {
+/// A lawn of 4 m x 4 m, by default 0.2 m high everywhere; else a third of it is higher.
+worlds::CellScene lawn(float higher = 0.2F) {
   worlds::CellScene scene;
   scene.thing({4.0, 8.0, -2.0, 2.0}, 0.05F, 0.2F);
+  scene.thing({4.0, 8.0, 0.8, 2.0}, 0.05F, higher);
   return scene;
 }
+const Rect kMiddle{5.8, 6.4, -0.2, 0.4};
 const std::vector<Position2> kLawnAndMiddle{{4.5, -1.5}, {6.1, 0.1}};
 
 TEST(DividedThings, ABoxStandsOutOfTheLawnAroundIt) {
-  worlds::CellScene box = lawn();
-  box.thing({5.8, 6.4, -0.2, 0.4}, 0.05F, 0.6F);
-  EXPECT_TRUE(worlds::all_apart(box.things_at(kLawnAndMiddle)));
-  worlds::CellScene low = lawn();
-  low.thing({5.8, 6.4, -0.2, 0.4}, 0.05F, 0.35F);
-  EXPECT_TRUE(worlds::all_one(low.things_at(kLawnAndMiddle))) << "grass is not as high everywhere";
-  worlds::CellScene flat = lawn();
-  flat.thing({5.8, 6.4, -0.2, 0.4}, 0.5F, 0.6F);
+  for (const float higher : {0.2F, 0.3F}) {
+    worlds::CellScene box = lawn(higher);
+    box.thing(kMiddle, 0.05F, 0.6F);
+    EXPECT_TRUE(worlds::all_apart(box.things_at(kLawnAndMiddle))) << higher;
+  }
+  worlds::CellScene flat = lawn(0.3F);
+  flat.thing(kMiddle, 0.5F, 0.6F);
   EXPECT_TRUE(worlds::all_one(flat.things_at(kLawnAndMiddle))) << "nothing upright is seen";
+}
+
+TEST(DividedThings, ALowBoxStandsOutOfALawnThatIsEven) {
+  worlds::CellScene box = lawn(), top = lawn();
+  box.thing(kMiddle, 0.05F, 0.35F);
+  EXPECT_TRUE(worlds::all_apart(box.things_at(kLawnAndMiddle)));
+  top.thing(kMiddle, 0.3F, 0.35F);
+  EXPECT_TRUE(worlds::all_apart(top.things_at(kLawnAndMiddle))) << "its top alone is seen";
+  worlds::CellScene uneven = lawn(0.3F), grass = lawn();
+  uneven.thing(kMiddle, 0.05F, 0.35F);
+  EXPECT_TRUE(worlds::all_one(uneven.things_at(kLawnAndMiddle))) << "the grass is as uneven";
+  grass.thing(kMiddle, 0.05F, 0.28F);
+  EXPECT_TRUE(worlds::all_one(grass.things_at(kLawnAndMiddle))) << "grass varies by as much";
+}
+
+// A mound rises by 0.08 m per cell.
+TEST(DividedThings, AMoundInALawnStaysOne) {
+  worlds::CellScene mound = lawn();
+  for (int k = 1; k < 5; ++k) {
+    const double half = 1.1 - 0.2 * k;
+    const float top = 0.2F + 0.08F * static_cast<float>(k);
+    mound.thing({6.1 - half, 6.1 + half, 0.1 - half, 0.1 + half}, 0.05F, top);
+  }
+  EXPECT_TRUE(worlds::all_one(mound.things_at(kLawnAndMiddle)));
 }
 
 // It rises by 0.1 m per cell from 0.1 to 0.8 m, and its sides are seen.
@@ -152,6 +177,13 @@ TEST(DividedThings, KerbsThatMeetAreTwo) {
   const std::vector<Position2> places{{4.3, 0.1}, {6.1, 2.5}};
   EXPECT_TRUE(worlds::all_apart(kerbs(meeting).things_at(places)));
   EXPECT_TRUE(worlds::all_one(kerbs(meeting, false).things_at(places))) << "no edge is sharp";
+}
+
+// Two pieces that are too short for strips touch the first kerb, with a quarter of all cells.
+TEST(DividedThings, KerbsMayHaveShortPieces) {
+  const std::vector<worlds::Rect> all{
+      {4.0, 8.0, -0.2, 0.2}, {5.8, 6.2, 0.2, 3.0}, {4.2, 4.6, -1.4, -0.2}, {7.4, 7.8, -1.4, -0.2}};
+  EXPECT_TRUE(worlds::all_apart(kerbs(all).things_at({{4.3, 0.1}, {6.1, 2.5}})));
 }
 
 // Its cells are more than a strip is wide.

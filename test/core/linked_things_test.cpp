@@ -206,7 +206,8 @@ TEST(LinkedThings, ACurbGoesOnBetweenTwoRings) {
   interrupted.scene.ground(at(5.1, 2.1));
   EXPECT_TRUE(all_apart(interrupted.things())) << "the ground is seen between";
   EXPECT_TRUE(all_apart(Curb(5.8, 0.2F).things())) << "not as high";
-  EXPECT_TRUE(all_apart(Curb(7.0).things())) << "too far";
+  EXPECT_TRUE(all_one(Curb(8.0).things()));
+  EXPECT_TRUE(all_apart(Curb(9.0).things())) << "too far";
 }
 
 /// A curb 0.12 m high along x at y = 2, and something small at x, y beside its end at x = 6. The
@@ -248,6 +249,18 @@ TEST(LinkedThings, TwoWallsThatAreAlikeAndOppositeEachOtherCarryADeck) {
   const Abutments lower(3.0, 1.3F), shifted(3.6), wide(3.0, 2.0F, 6.4);
   for (const Abutments* street : {&lower, &shifted, &wide})
     EXPECT_TRUE(all_apart(street->scene.things_at(street->places)));
+}
+
+// Of each wall the side towards the other one and its near end are seen, which turns the directions
+// of both by 5 deg, against each other.
+TEST(LinkedThings, TheNearEndsOfAbutmentsDoNotTurnThem) {
+  Scene scene;
+  for (const double side : {-1.0, 1.0}) {
+    const double face = side > 0.0 ? 2.0 : -2.2, end = side > 0.0 ? 2.2 : -2.6;
+    scene.thing({3.0, 5.4, face, face + 0.2}, 0.05F, 2.0F);
+    scene.thing({3.0, 3.2, end, end + 0.4}, 0.05F, 2.0F);
+  }
+  EXPECT_TRUE(all_one(scene.things_at({{4.1, -2.1}, {4.1, 2.1}})));
 }
 
 // The second wall ends opposite the middle of the first.

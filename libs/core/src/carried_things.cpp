@@ -32,7 +32,7 @@ constexpr float kWallHeight = 0.8F;
 constexpr float kWallLength = 1.5F, kMostWallLength = 6.0F, kSlender = 2.5F;
 constexpr float kNarrowSpan = 1.5F, kWideSpan = 5.0F;
 constexpr float kOpposite = 0.3F;
-constexpr float kParallel = 0.1F;
+constexpr float kParallel = 0.2F;
 constexpr float kTopShare = 0.3F;
 
 bool is_post(const ThingPiece& piece, const FieldClusterParams& params) {
@@ -155,14 +155,25 @@ class AbutmentLinker {
       const ThingPiece& second = pieces_.all()[static_cast<std::size_t>(walls[b])];
       for (std::size_t a = 0; a < b; ++a) {
         const ThingPiece& first = pieces_.all()[static_cast<std::size_t>(walls[a])];
-        if (are_alike(first, second) &&
-            (are_opposite(first, second) || are_opposite(second, first)))
+        if (!are_alike(first, second)) continue;
+        const Line line = line_between(first, second);
+        const Wall one{first, line}, other{second, line};
+        if (are_opposite(one, other) || are_opposite(other, one))
           pieces_.unite(first.slot, second.slot);
       }
     }
   }
 
  private:
+  /// A wall along the line between two.
+  struct Wall {
+    Wall(const ThingPiece& p, const Line& along) : piece(p), line(along) { extent.add(p, along); }
+    [[nodiscard]] float middle() const { return 0.5F * (extent.right + extent.left); }
+    const ThingPiece& piece;
+    const Line& line;
+    Extent extent;
+  };
+
   [[nodiscard]] bool is_wall(const ThingPiece& piece) const {
     const float length = piece.end - piece.begin + cell_;
     return piece.high > kWallHeight && length >= kWallLength && length <= kMostWallLength &&
@@ -172,26 +183,37 @@ class AbutmentLinker {
     return std::abs(a.high - b.high) <= std::max(kAsHigh, kTopShare * std::max(a.high, b.high)) &&
            std::abs(a.along_x * b.along_y - a.along_y * b.along_x) <= kParallel;
   }
+  // Along both walls. Of each, the side that faces the other one is seen, and the same end: this
+  // turns their own directions against each other, a short wall's more than a long one's.
+  static Line line_between(const ThingPiece& a, const ThingPiece& b) {
+    const float length_a = a.end - a.begin, length_b = b.end - b.begin;
+    const float same = a.along_x * b.along_x + a.along_y * b.along_y < 0.0F ? -1.0F : 1.0F;
+    const float weight_a = length_a * length_a, weight_b = same * length_b * length_b;
+    const float x = weight_a * a.along_x + weight_b * b.along_x;
+    const float y = weight_a * a.along_y + weight_b * b.along_y;
+    const float length = std::hypot(x, y);
+    return {a.x, a.y, x / length, y / length};
+  }
   // Whether both ends of one wall are opposite those of another, or one end, where the rest of the
   // shorter wall may be hidden.
-  [[nodiscard]] bool are_opposite(const ThingPiece& a, const ThingPiece& b) const {
-    Extent of_b;
-    of_b.add(b, {a.x, a.y, a.along_x, a.along_y});
-    const float span = std::max(of_b.right - a.left, a.right - of_b.left);
+  [[nodiscard]] bool are_opposite(const Wall& a, const Wall& b) const {
+    const Extent &of_a = a.extent, &of_b = b.extent;
+    const float span = std::max(of_b.right - of_a.left, of_a.right - of_b.left);
     if (span < kNarrowSpan || span > kWideSpan) return false;
-    const bool begins = std::abs(of_b.begin - a.begin) <= kOpposite;
-    const bool ends = std::abs(of_b.end - a.end) <= kOpposite;
+    const bool begins = std::abs(of_b.begin - of_a.begin) <= kOpposite;
+    const bool ends = std::abs(of_b.end - of_a.end) <= kOpposite;
     if (begins && ends) return true;
-    const float across = 0.5F * (of_b.right + of_b.left), top = std::min(a.top, b.top);
-    if (begins && of_b.end < a.end) return is_hidden(a, of_b.end, a.end, across, top);
-    return ends && of_b.begin > a.begin && is_hidden(a, a.begin, of_b.begin, across, top);
+    const float top = std::min(a.piece.top, b.piece.top);
+    if (begins && of_b.end < of_a.end) return is_hidden(a, b, of_b.end, of_a.end, top);
+    return ends && of_b.begin > of_a.begin && is_hidden(a, b, of_a.begin, of_b.begin, top);
   }
-  // Whether no beam has passed where a wall would go on, opposite a part of another one.
-  [[nodiscard]] bool is_hidden(const ThingPiece& wall, float begin, float end, float across,
+  // Whether no beam has passed where wall `b` would go on, opposite a part of `a`.
+  [[nodiscard]] bool is_hidden(const Wall& a, const Wall& b, float begin, float end,
                                float top) const {
     if (beams_ == nullptr) return false;
     for (float s = begin + cell_; s < end; s += cell_)
-      if (beams_->have_passed(wall.place(s, across), wall.ground, wall.ground + top)) return false;
+      if (beams_->have_passed(a.line.place(s, b.middle()), a.piece.ground, a.piece.ground + top))
+        return false;
     return true;
   }
 

@@ -21,7 +21,7 @@ constexpr float kTopShare = 0.3F;
 // Low things, such as curbs, are at most so high and so wide across the line through both, and
 // rings are at most so far apart on them, metres; of fewer cells nothing tells that line.
 constexpr float kLow = 0.3F, kLowWidth = 0.8F;
-constexpr float kRingGap = 2.0F;
+constexpr float kRingGap = 4.0F;
 constexpr float kFewestCells = 2.0F;
 // What lies in the strip of a larger low thing, which is so many times as long as wide: how much of
 // the ground it may cover, square metres, by how much it may reach out of the strip to the sides,

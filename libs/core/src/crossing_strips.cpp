@@ -19,12 +19,14 @@ constexpr float kShortest = 1.5F, kNarrowest = 1.0F;
 constexpr float kFilled = 0.5F;
 constexpr float kGround = 0.5F;
 // Strips are at most so wide (centres of cells), at least so long, with gaps of at most kGap cells,
-// metres; there are at most so many, and of the cells this share may be left over.
+// metres; there are at most so many, and of the cells this share may be left over: kerbs go on
+// behind gaps, and rings cross them. Less of it may lie beside a strip, as it does in areas.
 constexpr float kWidth = 0.5F;
 constexpr float kLength = 1.25F;
 constexpr std::int32_t kGap = 3;
 constexpr std::int32_t kMostStrips = 3;
-constexpr float kLeftOver = 0.15F;
+constexpr float kLeftOver = 0.3F;
+constexpr float kLeftBeside = 0.15F;
 // Directions that are tried, and by how many of them two strips differ that are not side by side.
 constexpr int kDirections = 90;
 constexpr int kSameDirection = 14;
@@ -76,8 +78,7 @@ class StripDivider {
   bool divide(IndexRange slots, const ThingPiece& piece) {
     if (!may_have_strips(slots, piece) || was_divided(slots, piece)) return false;
     place(slots);
-    if (!find_strips()) return false;
-    give_rest_to_nearest();
+    if (!find_strips() || !give_rest_to_nearest()) return false;
     for (std::size_t k = 0; k < slots.size(); ++k) part_of(slots.begin()[k]) = scratch_.strip_of[k];
     pieces_.separate(slots, pieces_.workspace.part_of, static_cast<std::size_t>(strips_));
     for (const std::int32_t slot : slots) part_of(slot) = 0;
@@ -290,7 +291,9 @@ class StripDivider {
     return dx * dx + dy * dy;
   }
 
-  void give_rest_to_nearest() {
+  // Gives what is left over to the nearest strips; false: too much of it lies beside one.
+  bool give_rest_to_nearest() {
+    std::int32_t beside = 0;
     std::vector<std::int32_t>& nearest = scratch_.along;
     nearest = scratch_.strip_of;
     for (std::size_t a = 0; a < nearest.size(); ++a) {
@@ -302,8 +305,10 @@ class StripDivider {
         least = square;
         nearest[a] = scratch_.strip_of[b];
       }
+      beside += least < kApart * kApart ? 1 : 0;
     }
     scratch_.strip_of.swap(nearest);
+    return static_cast<float>(beside) <= kLeftBeside * static_cast<float>(nearest.size());
   }
 
   const ThingPieces& pieces_;

@@ -15,10 +15,18 @@ constexpr std::size_t kFewestLow = 5;
 constexpr float kLowShare = 0.3F;
 // What stands out is so many times as high as the median of these.
 constexpr float kTimesAsHigh = 2.0F;
-// It has so many cells, and this share of them are upright.
+// In a lawn, which has so many low cells, of which at most this share are of decks, less stands
+// out: what is higher than three quarters of these by this, metres, and by so many times what these
+// are higher than the median. Its own border is a step of as much.
+constexpr std::size_t kFewestOfLawn = 60;
+constexpr float kDeckShare = 0.1F;
+constexpr float kClear = 0.1F;
+constexpr float kTimesSpread = 2.0F;
+// What stands out has so many cells, and, if not in a lawn, this share of them are upright.
 constexpr std::size_t kFewestStanding = 2;
 constexpr float kUprightShare = 0.5F;
-// Its edge belongs to it down to the middle between low cells and those that stand out.
+// Its edge belongs to it down to the middle between low cells, or the upper ones of a lawn, and
+// those that stand out.
 constexpr float kEdge = 0.5F;
 // Share of the neighbours in which it ends that are lower by a step.
 constexpr float kStepShare = 0.7F;
@@ -81,7 +89,29 @@ class StandingDivider {
     std::nth_element(tops_.begin(), middle, tops_.end());
     low_ = *middle;
     standing_ = std::max(kTimesAsHigh * low_, low_ + step_);
+    edge_ = low_ + kEdge * (standing_ - low_);
+    least_step_ = step_;
+    in_lawn_ = may_be_lawn(cells);
+    if (in_lawn_) find_heights_in_lawn();
     return highest > standing_;
+  }
+  [[nodiscard]] bool may_be_lawn(IndexRange cells) const {
+    if (tops_.size() < kFewestOfLawn) return false;
+    const auto decks = std::count_if(cells.begin(), cells.end(), [this](std::int32_t slot) {
+      return top(slot) < kLow && pieces_.cells.deck[static_cast<std::size_t>(slot)] >= 0;
+    });
+    return static_cast<float>(decks) <= kDeckShare * static_cast<float>(tops_.size());
+  }
+  // The tops of a lawn differ by less than what stands in it rises by.
+  void find_heights_in_lawn() {
+    const auto upper = tops_.begin() + static_cast<std::ptrdiff_t>(3 * tops_.size() / 4);
+    std::nth_element(tops_.begin(), upper, tops_.end());
+    const float standing = *upper + std::max(kClear, kTimesSpread * (*upper - low_));
+    in_lawn_ = standing < standing_;
+    if (!in_lawn_) return;
+    standing_ = standing;
+    edge_ = *upper + kEdge * (standing - *upper);
+    least_step_ = kClear;
   }
 
   // Parts of cells that stand out and touch; those that do stand are left in `queue_`.
@@ -118,6 +148,7 @@ class StandingDivider {
   }
   [[nodiscard]] bool stands(std::size_t begin) const {
     const std::size_t n = queue_.size() - begin;
+    if (in_lawn_) return n >= kFewestStanding;
     std::size_t upright = 0;
     for (std::size_t k = begin; k < queue_.size(); ++k) {
       const auto slot = static_cast<std::size_t>(queue_[k]);
@@ -129,11 +160,10 @@ class StandingDivider {
 
   // Gives the edges of standing parts to them, all at the same pace.
   void grow() {
-    const float edge = low_ + kEdge * (standing_ - low_);
     for (std::size_t k = 0; k < queue_.size(); ++k) {
       const std::int32_t slot = queue_[k];
       for_neighbours(slot, [&](std::int32_t other) {
-        if (part(other) != kLowPart || top(other) <= edge) return;
+        if (part(other) != kLowPart || top(other) <= edge_) return;
         part(other) = part(slot);
         queue_.push_back(other);
       });
@@ -151,7 +181,7 @@ class StandingDivider {
       tops_[parts + own] += 1.0F;
     }
     for (std::size_t k = 0; k < parts; ++k)
-      tops_[k] = std::max(step_, kStepOfRise * tops_[k] / tops_[parts + k]);
+      tops_[k] = std::max(least_step_, kStepOfRise * tops_[k] / tops_[parts + k]);
   }
 
   void look_at_borders() {
@@ -195,7 +225,8 @@ class StandingDivider {
   // Per standing part: neighbours in which it ends, and those that are lower by a step.
   std::vector<std::int32_t>& borders_ = pieces_.workspace.border_of;
   std::vector<std::int32_t>& steps_ = pieces_.workspace.steps_of;
-  float low_ = 0.0F, standing_ = 0.0F;
+  float low_ = 0.0F, standing_ = 0.0F, edge_ = 0.0F, least_step_ = 0.0F;
+  bool in_lawn_ = false;
 };
 
 }  // namespace
