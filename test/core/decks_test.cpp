@@ -232,6 +232,22 @@ TEST(Decks, RangeNoiseIsNoUnevennessWhereBeamsGraze) {
   EXPECT_EQ(grass.find(), 0U);
 }
 
+// One ring runs along the deck: on a surface its points are a line, in grass they lie in the cone
+// of its beams, which would pass for an inclined surface.
+TEST(Decks, OneRingTellsASurfaceFromGrass) {
+  const auto deck_of = [](double noise) {
+    return World(
+        [](double x, double y) {
+          if (!inside(x, y, 1.2, 4.0)) return kNoSurface;
+          return std::abs(x) < 0.05 ? 0.17 : kUnseen;
+        },
+        noise);
+  };
+  World surface = deck_of(0.01), grass = deck_of(0.1);
+  EXPECT_EQ(surface.find(), 1U);
+  EXPECT_EQ(grass.find(), 0U);
+}
+
 TEST(Decks, WhatBeamsEnterHereAndThereIsNone) {
   World firm(level(4.0, 4.0, 0.4)), grass = firm, hollow = firm;
   const std::size_t n = firm.points.size();

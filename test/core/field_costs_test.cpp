@@ -337,9 +337,26 @@ Points busy_ground(std::uint64_t seed, double curb = 0.0) {
   return points;
 }
 
+// Points of a cell of the description that were ground when its cells were counted; those of decks
+// and, later, of sides that the reference climbs are other points in the labels.
+double counted_ground(const Description& description, std::size_t slot) {
+  return description.grid.sums[slot].n - description.field.above[slot] -
+         description.field.below[slot];
+}
+
+// Whether two cells hold the same ground.
+bool same_ground(const Description& description, Slot slot, const ElevationGrid& alone,
+                 Slot slot_alone) {
+  if (slot == kUnobserved || slot_alone == kUnobserved) return slot == slot_alone;
+  const auto here = static_cast<std::size_t>(slot), there = static_cast<std::size_t>(slot_alone);
+  return description.field.deck[here] < 0 &&
+         counted_ground(description, here) == alone.sums[there].n;
+}
+
 // The ground is what the labels say: a grid of these points alone has the same slopes, steps and
 // roughness wherever no cell nearby holds other points only.
 TEST(FieldCosts, OracleGridOfTheGroundAlone) {
+  constexpr int kReach = 3;  // cells; steps are measured from planes of the neighbours' neighbours
   const World world(busy_ground(7));
   const Description& description = world.description;
   Points ground;
@@ -358,13 +375,11 @@ TEST(FieldCosts, OracleGridOfTheGroundAlone) {
   for (std::size_t slot = 0; slot < world.costs.size(); ++slot) {
     const CellIndex cell = description.grid.geometry.index_of(description.grid.cell[slot]);
     bool known = true;
-    for (int l = -2; l <= 2; ++l) {
-      for (int w = -2; w <= 2; ++w) {
+    for (int l = -kReach; l <= kReach; ++l) {
+      for (int w = -kReach; w <= kReach; ++w) {
         const CellIndex near{cell.l + l, cell.w + w};
-        const Slot other = description.grid.slot_at(near);
-        known =
-            known && (other == kUnobserved) == (grid.slot_at(near) == kUnobserved) &&
-            (other == kUnobserved || description.field.deck[static_cast<std::size_t>(other)] < 0);
+        known = known &&
+                same_ground(description, description.grid.slot_at(near), grid, grid.slot_at(near));
       }
     }
     if (!known) continue;

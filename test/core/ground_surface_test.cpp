@@ -291,6 +291,24 @@ TEST(GroundSurface, TheGroundGoesOnBelowAPatchOfGrass) {
   }
 }
 
+// So far away that no cell has more than one ring, grass scatters in no direction but along the
+// beams, and its points look like an inclined plane: whether it is solid keeps the reference down.
+TEST(GroundSurface, TheGroundGoesOnBelowGrassOfWhichCellsShowOneRing) {
+  const Points points = rings_through_grass({6.0, 9.0, -1.5, 1.5}, 0.25, 5);
+  Points below;
+  worlds::add_flat(below, {6.2, 9.0, -1.5, 1.5}, 0.2, 0.0);
+  const std::array<float, 3> sensor{0.0F, 0.0F, 0.81F};
+  const auto mean_error = [&](double grazed_sigma) {
+    GroundSurfaceParams params;
+    params.grazed_sigma = grazed_sigma;
+    GroundSurface surface;
+    GroundSurfaceWorkspace workspace;
+    find_ground_surface({points.view(), BeamOrigins{&sensor}}, params, workspace, surface);
+    return errors_of(surface, below, 20.0, level).mean;
+  };
+  EXPECT_LT(mean_error(GroundSurfaceParams{}.grazed_sigma), 0.4 * mean_error(1.0));
+}
+
 // A bed of gravel, such as between the rails of a tram, scatters as grass does and is the ground;
 // so is a lawn of this height. Grass that is higher stands on it. `spread` is that of the heights.
 TEST(GroundSurface, LooseBedsAreFollowedUpToTheirRise) {

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+#include <cmath>
+
 #include "mrpt_terrain/core/random.h"
+#include "worlds.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -63,6 +67,57 @@ TEST(HeightSums, PlaneThroughFourPointsAndAHigherOne) {
   EXPECT_NEAR(plane.gradient_y, -0.25F, 1e-5F);
   EXPECT_NEAR(plane.at_centre(), 2.2F, 1e-5F);
   EXPECT_NEAR(plane.variance, 0.16F, 1e-5F);  // mean of 0.2^2 four times and 0.8^2
+}
+
+// Oracle: 1 / (b' C^-1 b) with Eigen's inverse, in double precision. `spread` is that along the
+// axes of a turned box of points.
+TEST(HeightSums, VarianceAlongIsThatOfTheInverseCovariance) {
+  RandomGenerator random(3);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Eigen::Quaterniond turned =
+        Eigen::Quaterniond(random.uniform(), random.uniform(), random.uniform(), 1.0).normalized();
+    const Eigen::Vector3d spread(0.5, 0.1 + 0.2 * random.uniform(), 0.05);
+    HeightSums sums;
+    Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+    constexpr int kPoints = 200;
+    for (int k = 0; k < kPoints; ++k) {
+      Eigen::Vector3d point;
+      for (int axis = 0; axis < 3; ++axis)
+        point[axis] = spread[axis] * worlds::normal_deviate(random);
+      const Eigen::Vector3f single = (turned * point).cast<float>();
+      sums.add(single.x(), single.y(), single.z());
+    }
+    const HeightMoments m(sums);
+    const FourFloats &v = m.variances, &c = m.covariances;
+    products << v[0], c[0], c[1], c[0], v[1], c[2], c[1], c[2], v[2];
+    products.diagonal().array() += 1e-5;
+    const Eigen::Vector3d b = (turned * Eigen::Vector3d(1.0, 2.0, random.uniform())).normalized();
+    const double expected = 1.0 / b.dot(products.inverse() * b);
+    const float along = variance_along(
+        v, c, {static_cast<float>(b.x()), static_cast<float>(b.y()), static_cast<float>(b.z())});
+    EXPECT_NEAR(double{along}, expected, 2e-3 * expected);
+  }
+}
+
+// Analytic: of a straight ring across the beam nothing is left but the noise that gives it a
+// volume, of one whose points scatter along the beam their variance, and of a plane seen by many
+// rings, inclined by atan(1 / 4) to the beam, that noise over the squared sine.
+TEST(HeightSums, VarianceAlongABeamIsScatterNotPlace) {
+  HeightSums ring, loose, plane;
+  for (int k = -10; k <= 10; ++k) {
+    const float y = 0.05F * static_cast<float>(k), jump = k % 2 == 0 ? 0.1F : -0.1F;
+    ring.add(0.5F * y, y, 0.0F);
+    loose.add(0.5F * y + jump, y, 0.0F);
+    for (int l = -10; l <= 10; ++l)
+      plane.add(0.05F * static_cast<float>(l), y, 0.0125F * static_cast<float>(l));
+  }
+  const auto along_x = [](const HeightSums& sums) {
+    const HeightMoments m(sums);
+    return std::sqrt(variance_along(m.variances, m.covariances, {1.0F, 0.0F, 0.0F}));
+  };
+  EXPECT_LT(along_x(ring), 0.004F);
+  EXPECT_NEAR(along_x(loose), 0.1F, 0.001F);
+  EXPECT_LT(along_x(plane), 0.014F);
 }
 
 }  // namespace
