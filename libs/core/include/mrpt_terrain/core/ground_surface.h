@@ -30,13 +30,13 @@ struct GroundSurfaceParams {
   double rough_bend = 0.3;   ///< share of `bend` that rough cells are given
   double dip = 2.0;          ///< tolerance of heights below the reference over that above
   double low_weight = 20.0;  ///< weight of a low height below the reference over one above
-  double smooth_sigma = 0.035;  ///< roughness at which a cell counts half
-  double firm_sigma = 0.005;    ///< the same among smooth ones, of surfaces that beams graze...
-  double beam_sigma = 0.04;     ///< ...and of noise along the beams: what they enter has more
+  double smooth_sigma = 0.035;   ///< roughness at which a cell counts half
+  double firm_sigma = 0.005;     ///< the same among smooth ones, of surfaces that beams graze...
+  double beam_sigma = 0.04;      ///< ...and of noise along the beams: what they enter has more
   double grazed_sigma = 0.0025;  ///< roughness of ground, seen along beams that graze it
-  double rough_weight = 0.8;    ///< how little rough cells count between smooth ones
-  double loose_rise = 0.08;     ///< what scatters along beams, among what does not, rises by less
-  double hold = 1.0;            ///< weight of the coarser level, in cells
+  double rough_weight = 0.8;     ///< how little rough cells count between smooth ones
+  double loose_rise = 0.08;      ///< what scatters along beams, among what does not, rises by less
+  double hold = 1.0;             ///< weight of the coarser level, in cells
 
   template <class Self, class Visitor>
   static void visit_params(Self& self, Visitor&& visit) {
@@ -88,7 +88,7 @@ struct GroundSurfaceParams {
 struct GroundCell {
   float low = 0.0F;        ///< mean height of the points of its low band
   float points = 0.0F;     ///< how many they are
-  float smooth = 0.0F;     ///< 0 to 1: of roughness, and among smooth cells of scatter along beams
+  float smooth = 0.0F;     ///< 0 to 1: of roughness, what beams' noise explains taken off
   float weight = 0.0F;     ///< of `low` in the reference, 0 to 1
   float most_rise = 0.0F;  ///< it lifts no level on which it is more than this above
 };
@@ -188,7 +188,8 @@ struct GroundSurfaceWorkspace {
 /// level, the low heights of the cells that lie within a tolerance of the reference so far are
 /// averaged and carried on to the next. Heights below the reference count more than those above
 /// it, smooth cells more than rough ones, cells with points over their low band less. Among smooth
-/// cells, those count as rough that scatter more along the beams than range noise does.
+/// cells, those count as rough that scatter more than range noise along the beams explains, and
+/// those in which beams go on into what they meet lift the reference little.
 ///
 /// Where beams begin is taken to be 1 m above the frame's origin if it is not known.
 ///
