@@ -88,6 +88,21 @@ TEST(GroundSurface, ATiltedPlaneIsFoundWhereverThereArePoints) {
   }
 }
 
+// A robot that climbs a ramp of 20 deg, with a sensor that hangs over by 10 deg, sees the level
+// ground around in a frame tilted by both.
+TEST(GroundSurface, TheGroundAroundARampIsFoundFromUponIt) {
+  const double tilt = radians(30.0);
+  for (const int beams : {16, 32, 64}) {
+    const Points points = worlds::tilted(scan_of({}, beams), tilt, 0.2);
+    const GroundSurface surface = surface_of(points);
+    const auto plane = [tilt](double x, double) { return 0.2 - std::tan(tilt) * x; };
+    const Errors errors = errors_of(surface, points, 30.0, plane);
+    ASSERT_GT(errors.points, 4000);
+    EXPECT_LT(errors.worst, 0.03) << beams;
+    EXPECT_LT(errors.mean, 0.005) << beams;
+  }
+}
+
 TEST(GroundSurface, HeightsOfPointsAreTheirsAboveTheReference) {
   const Points points = worlds::tilted(scan_of({}, 32), radians(10.0), 0.2);
   const GroundSurface surface = surface_of(points);

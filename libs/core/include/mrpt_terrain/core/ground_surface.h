@@ -21,7 +21,7 @@ namespace mrpt_terrain {
 struct GroundSurfaceParams {
   double reach = 102.4;    ///< the reference covers a square of twice this side about the robot
   double cell_size = 0.4;  ///< of the finest level
-  double max_tilt = 0.3490658503988659;  ///< of the ground under the robot in its frame, radians
+  double max_tilt = 0.6108652381980153;  ///< of the ground under the robot in its frame, radians
   double max_offset = 0.6;               ///< of the ground under the robot from z = 0
   double low_band = 0.06;    ///< points this far above the lowest of a cell give its low height
   double low_part = 0.4;     ///< points this far above the lowest of a cell tell how rough it is
