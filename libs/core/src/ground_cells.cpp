@@ -32,6 +32,10 @@ constexpr float kAnyRise = 1e9F;
 // Beams that meet the ground at a flatter angle count as if it were this sine: errors of a cell's
 // mean plane would have the say.
 constexpr float kLeastSine = 0.02F;
+// Share of the cells that show firm ground at least, and up to which scatter along the beams noise
+// is as expected, as a multiple of the variance at which cells count half; fewer cells do not tell.
+constexpr float kQuietShare = 0.3F, kQuietRatio = 0.35F;
+constexpr std::size_t kEnoughCells = 50;
 constexpr float kSensorHeight = 1.0F;  // metres, where it is not known
 // Level on whose cells rough cells are compared with smooth ones around.
 constexpr int kRoughLevel = 4;
@@ -208,6 +212,22 @@ float smoothness(float variance, float at_half) {
   return 1.0F / (1.0F + squared(variance / at_half));
 }
 
+// Noise along the beams of a scan, as a multiple of the variance that is expected, 1 at least:
+// where many cells are as quiet as that, and even where grass has most of them, what scatters more
+// is loose. A scan whose quietest cells scatter more is that of a noisier sensor.
+float noise_along_beams(const GroundSurface& surface, GroundSurfaceWorkspace& workspace) {
+  std::vector<float>& ratios = workspace.mixed;
+  ratios.clear();
+  for (std::size_t slot = 0; slot < surface.ground.size(); ++slot)
+    if (workspace.scatter[slot].freedoms() >= kEnoughFreedoms)
+      ratios.push_back(workspace.solid[slot]);
+  if (ratios.size() < kEnoughCells) return 1.0F;
+  const auto quiet =
+      ratios.begin() + static_cast<std::ptrdiff_t>(kQuietShare * static_cast<float>(ratios.size()));
+  std::nth_element(ratios.begin(), quiet, ratios.end());
+  return std::max(*quiet / kQuietRatio, 1.0F);
+}
+
 void measure_smoothness(const BeamOrigins& origins, const GroundSurfaceParams& params,
                         GroundSurfaceWorkspace& workspace, GroundSurface& surface) {
   const float rough = squared(static_cast<float>(params.smooth_sigma));
@@ -221,10 +241,17 @@ void measure_smoothness(const BeamOrigins& origins, const GroundSurfaceParams& p
     const float variance = variance_across(around);
     const Incidence at = incidence_of(origins, surface, slot, around);
     const float along = variance_along_beam(surface, workspace.scatter, slot, at.beam);
+    workspace.even[slot] = variance;
+    workspace.firm[slot] = firm + along_beam * at.squared_sine;
+    workspace.solid[slot] = along / (along_beam + grazed / at.squared_sine);
+  }
+  surface.beam_noise = noise_along_beams(surface, workspace);
+  for (std::size_t slot = 0; slot < surface.ground.size(); ++slot) {
+    const float variance = workspace.even[slot];
     workspace.even[slot] = smoothness(variance, rough);
     workspace.firm[slot] =
-        smoothness(variance, std::min(rough, firm + along_beam * at.squared_sine));
-    workspace.solid[slot] = smoothness(along, along_beam + grazed / at.squared_sine);
+        smoothness(variance, std::min(rough, surface.beam_noise * workspace.firm[slot]));
+    workspace.solid[slot] = smoothness(workspace.solid[slot], surface.beam_noise);
   }
 }
 

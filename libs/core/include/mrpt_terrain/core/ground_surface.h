@@ -97,6 +97,9 @@ struct GroundCell {
 struct GroundSurface {
   /// Plane of the ground near the robot: z = gradient_x x + gradient_y y + offset.
   float gradient_x = 0.0F, gradient_y = 0.0F, offset = 0.0F;
+  /// Variance of noise along the beams over what `beam_sigma` and `grazed_sigma` allow for, at
+  /// least 1: noisier sensors have more.
+  float beam_noise = 1.0F;
   CellPoints cells;                ///< the points, cell by cell
   std::vector<GroundCell> ground;  ///< per slot of `cells`
   std::vector<float> node;         ///< per cell of the lattice: height at its centre
