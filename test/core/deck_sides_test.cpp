@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "allocation_counter.h"
@@ -125,6 +126,27 @@ TEST(DeckSides, ManyPointsAreThinnedOut) {
   EXPECT_TRUE(sides.on(0, 3.9, 0.0));
   EXPECT_TRUE(sides.on(0, 0.0, 1.9));
   EXPECT_TRUE(sides.on(1, 0.5, 5.0));
+}
+
+// Random points and every n-th are taken of points in the order of the scan, whatever order they
+// come in.
+TEST(DeckSides, TheOrderOfThePointsDoesNotMatter) {
+  Sides scan;
+  for (const std::int32_t deck : {1, 0, 1}) scan.add(deck, -1.0, 0.7, 1.0, 1.3 + deck, 900, 0.03);
+  Sides shuffled = scan;
+  for (std::size_t k = shuffled.points.size() - 1; k > 0; --k)
+    std::swap(shuffled.points[k],
+              shuffled.points[shuffled.random.below(static_cast<std::uint32_t>(k + 1))]);
+  scan.find();
+  shuffled.find();
+  ASSERT_GE(scan.found.size(), 2U);
+  ASSERT_EQ(shuffled.found.size(), scan.found.size());
+  for (std::size_t k = 0; k < scan.found.size(); ++k) {
+    EXPECT_EQ(shuffled.found[k].deck, scan.found[k].deck);
+    EXPECT_EQ(shuffled.found[k].x, scan.found[k].x);
+    EXPECT_EQ(shuffled.found[k].along_y, scan.found[k].along_y);
+    EXPECT_EQ(shuffled.found[k].half_length, scan.found[k].half_length);
+  }
 }
 
 TEST(DeckSides, UsedMemoryIsEnough) {

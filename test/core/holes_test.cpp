@@ -191,6 +191,20 @@ TEST(Holes, AHoleThatFillsNoCellIsFound) {
   EXPECT_TRUE(hole_of(0.04).found.empty());
 }
 
+// The floor has the 16 points of a cell, and 4 in the cell beside, which lies 2.5 cm deep on
+// average and is no candidate.
+TEST(Holes, PointsInCellsAtItsEdgeCountAsFloor) {
+  const Points points = ground_of(
+      [](double x, double y) { return x > 2.0 && x < 2.25 && y > 1.0 && y < 1.2 ? -0.1 : 0.0; });
+  HoleParams params;
+  params.least_points = 20;
+  const Holes holes = holes_in(points, params);
+  ASSERT_EQ(holes.found.size(), 1U);
+  EXPECT_EQ(holes.found[0].points, 20);
+  params.least_points = 21;
+  EXPECT_TRUE(holes_in(points, params).found.empty());
+}
+
 // Half a metre wide, right through the patch.
 TEST(Holes, ADitchIsFound) {
   const Holes holes = holes_in(worlds::patch_with_hole(kPatch, {2.0, 2.6, -6.0, 6.0}, 0.15));

@@ -91,8 +91,9 @@ void link_hanging(const ThingPieces& pieces) {
 }
 
 bool is_side(const ThingPiece& a, const ThingPiece& b) {
+  if (std::abs(a.high - b.high) > kAsHigh) return false;  // most posts, and quick to see
   const float length = std::hypot(a.x - b.x, a.y - b.y);
-  return std::abs(a.high - b.high) <= kAsHigh && length >= kShortSide && length <= kLongSide;
+  return length >= kShortSide && length <= kLongSide;
 }
 
 bool is_right_angle(const ThingPiece& corner, const ThingPiece& a, const ThingPiece& b) {

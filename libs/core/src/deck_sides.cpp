@@ -263,27 +263,40 @@ void find_sides_of_deck(PointRange points, int most, std::size_t fewest, float r
   }
 }
 
+// Most of them come cell by cell. Their numbers are spread over those of the scan, so that few fall
+// into one bucket.
+void put_in_scan_order(std::vector<DeckSidePoint>& points, DeckSideBuckets& buckets) {
+  const auto less = [](const DeckSidePoint& a, const DeckSidePoint& b) {
+    return a.point < b.point;
+  };
+  if (std::is_sorted(points.begin(), points.end(), less)) return;
+  const auto ends = std::minmax_element(points.begin(), points.end(), less);
+  const std::int32_t first = ends.first->point, last = ends.second->point;
+  const double share = static_cast<double>(points.size()) / (1.0 + last - first);
+  sort_in_buckets(
+      points.size(),
+      [first, share](const DeckSidePoint& p) {
+        return static_cast<std::size_t>(share * (p.point - first));
+      },
+      less, points, buckets.points, buckets.end);
+}
+
 // Calls `visit` with the points of every deck that has at least `fewest`, in their order in the
 // scan.
 template <class Visitor>
 void for_each_deck(std::size_t fewest, std::vector<DeckSidePoint>& points, DeckSideBuckets& buckets,
                    Visitor&& visit) {
+  put_in_scan_order(points, buckets);
   std::int32_t decks = 0;
   for (const DeckSidePoint& p : points) decks = std::max(decks, p.deck + 1);
   put_into_buckets(
       static_cast<std::size_t>(decks),
       [](const DeckSidePoint& p) { return static_cast<std::size_t>(p.deck); }, points,
       buckets.points, buckets.end);
-  const auto less = [](const DeckSidePoint& a, const DeckSidePoint& b) {
-    return a.point < b.point;
-  };
   PointRange of_deck{points.begin(), points.begin()};
   for (std::size_t deck = 0; deck < static_cast<std::size_t>(decks); ++deck) {
     of_deck = {of_deck.last, points.begin() + buckets.end[deck]};
-    if (of_deck.size() < fewest) continue;
-    if (!std::is_sorted(of_deck.begin(), of_deck.end(), less))
-      std::sort(of_deck.begin(), of_deck.end(), less);
-    visit(of_deck);
+    if (of_deck.size() >= fewest) visit(of_deck);
   }
 }
 

@@ -190,10 +190,10 @@ void mark_candidates(const HoleInput& input, const HoleParams& params, HoleWorks
     const Position2 centre = grid.geometry.centre_of(at);
     cells.rim[slot] =
         rim.at(static_cast<float>(centre.x), static_cast<float>(centre.y), cells.ground[slot]);
-    const bool floor = !holds_thing(cells, slot) && cells.on[slot] + cells.below[slot] > 0;
     const float depth = depth_of(cells, slot);
-    const bool edge =
-        depth >= kEdgeMean * least && cells.rim[slot] - grid.h_min[slot] >= kEdgeLowest * least;
+    if (!(depth >= kEdgeMean * least)) continue;  // most cells, and quick to see
+    const bool edge = cells.rim[slot] - grid.h_min[slot] >= kEdgeLowest * least;
+    const bool floor = !holds_thing(cells, slot) && cells.on[slot] + cells.below[slot] > 0;
     if (floor && (edge || depth >= least))
       (depth >= least ? workspace.floor : workspace.edges).add(slot, at);
   }
@@ -664,6 +664,21 @@ void add_cells(const ElevationGrid& grid, std::vector<std::int32_t>& members,
   hole_cells.first.push_back(static_cast<std::int32_t>(hole_cells.items.size()));
 }
 
+// Whether the members, and cells next to them that hold deep points and may become some, have too
+// few points for a floor.
+bool has_few_points(const HoleCase& hole) {
+  const ElevationGrid& grid = hole.grid();
+  const FieldCells& cells = hole.cells;
+  const auto least = static_cast<float>(kEdgeMean * hole.params.least_depth);
+  std::int32_t points = 0;
+  for (const std::int32_t slot : hole.workspace.zoned) {
+    const auto s = static_cast<std::size_t>(slot);
+    const bool deep = cells.rim[s] - grid.h_min[s] >= least;
+    if (deep || hole.workspace.zone[s] == HoleZone::kFloor) points += cells.on[s] + cells.below[s];
+  }
+  return points < hole.params.least_points;
+}
+
 // So many looks may meet no rim.
 double most_others(const HoleCase& hole) { return (1.0 - hole.params.closed) * hole.around; }
 
@@ -673,6 +688,7 @@ double most_others(const HoleCase& hole) { return (1.0 - hole.params.closed) * h
 bool measure_hole(HoleCase& hole, HoleWindow& window) {
   if (is_too_wide(hole)) return false;
   mark_zones(hole);
+  if (has_few_points(hole)) return false;
   window = window_around(hole);
   collect_points(hole, window);
   if (!measure_depth(hole)) return false;
