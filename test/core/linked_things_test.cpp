@@ -176,6 +176,39 @@ TEST(LinkedThings, WhatColumnsOfBeamsMeetFarApartIsOneWall) {
   EXPECT_TRUE(all_apart(flat_wall(3.0))) << "beams pass between";
 }
 
+/// Columns of points on a wall that goes away from the sensor, 0.4 m of it unseen between any two.
+struct Columns {
+  Scene scene;
+  std::vector<Position2> places;
+  void add(double x, double y, float high = 1.8F) {
+    places.push_back({x, y});
+    scene.thing(at(x, y), 0.05F, high);
+  }
+  [[nodiscard]] std::vector<std::int32_t> things() const {
+    return scene.things_at(places, &kSensor);
+  }
+};
+Columns three_columns(double y, double beside = 0.0, float last = 1.8F) {
+  Columns columns;
+  columns.add(6.1, y);
+  columns.add(6.7, y + beside);
+  columns.add(7.3, y, last);
+  return columns;
+}
+
+TEST(LinkedThings, ThreeColumnsOfBeamsInARowAreAWall) {
+  EXPECT_TRUE(all_one(three_columns(0.7).things()));
+  Columns two, low;
+  two.add(6.1, 0.7);
+  two.add(6.7, 0.7);
+  EXPECT_TRUE(all_apart(two.things())) << "one may stand behind the other";
+  for (const double x : {6.1, 6.7, 7.3}) low.add(x, 0.7, 0.7F);
+  EXPECT_TRUE(all_apart(low.things())) << "too low for a wall";
+  EXPECT_TRUE(all_apart(three_columns(0.7, 0.6).things())) << "in no row";
+  EXPECT_TRUE(all_apart(three_columns(3.1).things())) << "beams pass between";
+  EXPECT_TRUE(all_apart(three_columns(0.7, 0.0, 2.8F).things())) << "not as high";
+}
+
 TEST(LinkedThings, WhatIsFarLowerOrBesideTheLineIsAnotherThing) {
   EXPECT_TRUE(all_apart(Wall(0.3F).things()));
   Wall beside;
@@ -320,6 +353,26 @@ TEST(LinkedThings, WhatTheGroundRisesToWithoutAStepIsNone) {
   EXPECT_NE(rise(0.3F, 0.02F), kNoCluster) << "a step down to the ground";
   EXPECT_NE(rise(0.5F, 0.08F), kNoCluster) << "high";
   EXPECT_NE(rise(0.3F, 0.08F, 0.12F), kNoCluster) << "upright";
+}
+
+/// What is even and so high, with a step down to the ground along one of its long sides and, if
+/// there are two, along the other.
+std::int32_t deck_with_steps(int steps, bool deck, float high) {
+  Scene scene;
+  const Rect whole{3.0, 4.0, 1.0, 1.4};
+  scene.ground({2.8, 4.2, 0.8, 1.6}, 0.8F * high);
+  scene.ground({3.0, 4.0, 0.8, 1.0});
+  if (steps == 2) scene.ground({3.0, 4.0, 1.4, 1.6});
+  scene.thing(whole, high - 0.05F, high);
+  if (deck) scene.deck(whole);
+  return scene.things_at({{3.5, 1.1}}).front();
+}
+
+TEST(LinkedThings, ADeckEndsInStepsForTheMostPart) {
+  EXPECT_EQ(deck_with_steps(1, true, 0.2F), kNoCluster);
+  EXPECT_EQ(deck_with_steps(1, true, 0.6F), kNoCluster) << "however high";
+  EXPECT_NE(deck_with_steps(2, true, 0.2F), kNoCluster);
+  EXPECT_NE(deck_with_steps(1, false, 0.2F), kNoCluster) << "no deck";
 }
 
 }  // namespace

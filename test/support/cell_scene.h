@@ -30,6 +30,10 @@ class CellScene {
       cell.high = high;
     });
   }
+  /// What is above the ground in a rectangle is a deck.
+  void deck(const Rect& rect) {
+    for_cells(rect, [](Cell& cell) { cell.deck = 0; });
+  }
   /// The edges of things in a rectangle are sharp.
   void sharp(const Rect& rect) {
     for_cells(rect, [](Cell& cell) { cell.sharp = 1; });
@@ -64,6 +68,7 @@ class CellScene {
     float low = 0.0F, high = 0.0F, floor = 0.0F;
     std::uint8_t level = 0;
     std::int8_t sharp = 0;
+    std::int32_t deck = -1;
   };
   static constexpr int kSide = 100;
   static constexpr double kCell = 0.2;
@@ -106,6 +111,7 @@ class CellScene {
         field.floor.push_back(cell.floor);
         field.level.push_back(cell.level);
         field.sharp_edges.push_back(cell.sharp);
+        field.deck.push_back(cell.deck);
       }
     }
     const std::size_t n = result.grid.observed();
@@ -113,7 +119,6 @@ class CellScene {
       values->assign(n, 0.0F);
     for (auto* counts : {&field.below, &field.raised}) counts->assign(n, 0);
     field.smooth_edges.assign(n, 0);
-    field.deck.assign(n, -1);
     return result;
   }
 

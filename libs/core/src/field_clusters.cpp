@@ -14,6 +14,7 @@
 #include "slots_around.h"
 #include "standing_things.h"
 #include "thing_pieces.h"
+#include "wall_columns.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -218,6 +219,7 @@ void find_field_clusters(const ElevationGrid& grid, const GroundSegmentation& gr
   const bool standing = divide_standing_things(pieces);
   const bool crossing = divide_crossing_strips(pieces);
   if (standing || crossing) pieces.measure();
+  if (beams && link_wall_columns(pieces, *beams)) pieces.measure();
   link_carried_things(pieces);
   link_loose_things(pieces);
   if (beams) link_continued_things(pieces, *beams);

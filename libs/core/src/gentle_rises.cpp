@@ -11,6 +11,9 @@ constexpr float kUpright = 0.1F;
 // A step leads down to less than this share of a cell's mean height, at most so many cells away.
 constexpr float kStep = 0.5F;
 constexpr int kReach = 2;
+// A deck is a step up from the ground around it: of the edges of one, at least this share are
+// steps.
+constexpr float kDeckSteps = 0.5F;
 
 /// Steps of a cell down to the ground beside, and its edges to the ground that are none.
 struct Edges {
@@ -48,9 +51,11 @@ void find_gentle_rises(const ThingPieces& pieces) {
   const std::vector<std::int32_t>& members = workspace.points_of;
   std::vector<std::int32_t>& surplus = workspace.border_of;  // points above less raised ones
   std::vector<float>& balance = workspace.tops;              // steps less their least share
+  std::vector<std::int32_t>& decks = workspace.steps_of;     // cells of decks less others
   workspace.gentle.assign(cells.size(), 0);
   surplus.resize(cells.size());
   balance.resize(cells.size());
+  decks.resize(cells.size());
   for (const std::int32_t member : members) {
     const auto slot = static_cast<std::size_t>(member);
     workspace.parent[slot] = root_of(workspace.parent, member);
@@ -59,11 +64,14 @@ void find_gentle_rises(const ThingPieces& pieces) {
       workspace.gentle[root] = 1;
       surplus[root] = 0;
       balance[root] = 0.0F;
+      decks[root] = 0;
     }
     if (workspace.gentle[root] == 0) continue;
     surplus[root] += cells.above[slot] - cells.raised[slot];
+    const bool deck = cells.deck[slot] >= 0;
+    decks[root] += deck ? 1 : -1;
     const float low = low_of(cells, slot), high = high_of(cells, slot);
-    if (high >= kLow || high - low >= kUpright) workspace.gentle[root] = 0;
+    if ((high >= kLow && !deck) || high - low >= kUpright) workspace.gentle[root] = 0;
   }
   const auto sharp = static_cast<float>(pieces.params.sharp);
   for (const std::int32_t member : members) {
@@ -71,7 +79,8 @@ void find_gentle_rises(const ThingPieces& pieces) {
     if (workspace.gentle[root] == 0 || surplus[root] <= 0) continue;
     const Edges edges = edges_of(pieces, static_cast<std::size_t>(member));
     const auto steps = static_cast<float>(edges.steps), gentle = static_cast<float>(edges.gentle);
-    balance[root] += steps - sharp * (steps + gentle);
+    const float least = decks[root] > 0 ? kDeckSteps : sharp;
+    balance[root] += steps - least * (steps + gentle);
   }
   for (const std::int32_t member : members) {
     const auto slot = static_cast<std::size_t>(member);
