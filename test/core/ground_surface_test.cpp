@@ -132,6 +132,58 @@ TEST(GroundSurface, AHillIsFollowed) {
   EXPECT_LT(errors.worst, 0.02);
 }
 
+// One beam in fifty is reflected and ends half as far again or twice as far away, below the ground:
+// near the robot that is a point in most cells, which would be the lowest of each. The beams would
+// have had to pass through ground that others show.
+TEST(GroundSurface, ReflectionsBelowTheGroundDoNotPullIt) {
+  Points points = worlds::ring_scan(worlds::coarse_rings(32), 0.81, hill);
+  const Points ground = points;
+  const std::array<float, 3>& sensor = worlds::kLidarOrigin;
+  RandomGenerator random(5);
+  const std::size_t n = points.size();
+  for (std::size_t i = 0; i < n; i += 50) {
+    const auto further = static_cast<float>(1.5 + 0.5 * random.uniform());
+    points.push_back(sensor[0] + further * (points.x[i] - sensor[0]),
+                     sensor[1] + further * (points.y[i] - sensor[1]),
+                     sensor[2] + further * (points.z[i] - sensor[2]));
+  }
+  GroundSurfaceWorkspace workspace;
+  GroundSurface surface;
+  find_ground_surface({points.view(), BeamOrigins{&sensor}}, {}, workspace, surface);
+  const double cleaned = errors_of(surface, ground, 15.0, hill).mean;
+  const double pulled = errors_of(surface_of(points), ground, 15.0, hill).mean;
+  EXPECT_LT(cleaned, 0.02);
+  EXPECT_GT(pulled, 3.0 * cleaned) << "without origins nothing speaks against the points";
+}
+
+// What lies below the ground around, but in sight, is no reflection: behind an edge, beyond a rise,
+// on the floor of a hole, or below a roof whose cells show nothing else.
+TEST(GroundSurface, WhatIsSeenBelowEdgesIsNoReflection) {
+  const auto drop = [](double x, double) { return x < 6.0 ? 0.0 : -1.0; };
+  const auto hole = [](double x, double y) { return std::hypot(x - 3.0, y) < 0.5 ? -0.2 : 0.0; };
+  const auto buried_in = [](const Points& points) {
+    GroundSurfaceWorkspace workspace;
+    GroundSurface surface;
+    find_ground_surface({points.view(), BeamOrigins{&worlds::kLidarOrigin}}, {}, workspace,
+                        surface);
+    return workspace.buried.cells.size();
+  };
+  for (const int beams : {16, 32, 64}) {
+    const auto rings = worlds::coarse_rings(beams);
+    EXPECT_EQ(buried_in(worlds::ring_scan(rings, 0.81, drop)), 0U) << beams;
+    EXPECT_EQ(buried_in(worlds::ring_scan(rings, 0.81, hill)), 0U) << beams;
+    EXPECT_EQ(buried_in(worlds::ring_scan(rings, 0.81, hole)), 0U) << beams;
+    Points roofed = worlds::ring_scan(rings, 0.81, [](double, double) { return 0.0; });
+    worlds::add_flat(roofed, {0.0, 12.0, -4.0, 4.0}, 0.05, 1.5);
+    EXPECT_EQ(buried_in(roofed), 0U) << beams << " beams, below a roof";
+  }
+  Points behind_roof;
+  worlds::add_flat(behind_roof, {2.0, 4.0, -2.0, 2.0}, 0.05, 0.0);
+  worlds::add_flat(behind_roof, {6.0, 12.0, -2.0, 2.0}, 0.05, 1.5);
+  worlds::add_point(behind_roof, 13.0, 0.0, 0.0);
+  EXPECT_EQ(buried_in(behind_roof), 0U);
+}
+
 // A hill seen by a sensor whose noise has 8 cm along the beams, twice what surfaces are expected to
 // scatter by: that does not make it grass, which would lift the reference by some centimetres only.
 // The same scan without noise needs no allowance.

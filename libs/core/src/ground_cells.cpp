@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include "buried_points.h"
 #include "nine_cells.h"
 #include "surface_levels.h"
 
@@ -55,6 +56,20 @@ PointsOfCell points_in(const CellPoints& cells, std::size_t slot) {
   return {points + cells.first[slot], points + cells.first[slot + 1],
           cells.lattice.centre(cells.cell[slot].row),
           cells.lattice.centre(cells.cell[slot].column)};
+}
+
+PointsOfCell points_kept(const GroundSurface& surface, const GroundSurfaceWorkspace& workspace,
+                         const BuriedInCells::Cell& cell) {
+  PointsOfCell points = points_in(surface.cells, static_cast<std::size_t>(cell.slot));
+  points.first = workspace.buried.kept.data() + cell.first;
+  points.last = workspace.buried.kept.data() + cell.last;
+  return points;
+}
+
+// A cell without a point that tells of ground.
+void forget(std::size_t slot, GroundSurfaceWorkspace& workspace, GroundSurface& surface) {
+  workspace.part[slot] = 0.0F;
+  surface.ground[slot].points = 0.0F;
 }
 
 struct LowBand {
@@ -340,13 +355,21 @@ void measure_ground_cells(const BeamOrigins& origins, const GroundSurfaceParams&
   workspace.scatter.back() = {};
   const auto low_band = static_cast<float>(params.low_band);
   const auto low_part = static_cast<float>(params.low_part);
-  for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
-    const LowBand band =
-        measure_points(points_in(cells, slot), low_band, low_part, workspace.sums[slot]);
+  const auto measure = [&](std::size_t slot, const PointsOfCell& points) {
+    const LowBand band = measure_points(points, low_band, low_part, workspace.sums[slot]);
     workspace.lowest[slot] = band.lowest;
     workspace.part[slot] = band.share;
     surface.ground[slot].low = band.mean;
     surface.ground[slot].points = band.points;
+  };
+  for (std::size_t slot = 0; slot < cells.occupied(); ++slot) measure(slot, points_in(cells, slot));
+  find_buried_points(origins, low_band, surface, workspace);
+  for (const BuriedInCells::Cell& cell : workspace.buried.cells) {
+    const auto slot = static_cast<std::size_t>(cell.slot);
+    if (cell.first < cell.last)
+      measure(slot, points_kept(surface, workspace, cell));
+    else
+      forget(slot, workspace, surface);
   }
   measure_smoothness(origins, params, workspace, surface);
   set_weights(params, Levels::kCoarse, workspace, surface);
@@ -360,14 +383,23 @@ void measure_above_level(const GroundSurfaceParams& params, int level,
   surface.height.resize(cells.points.size());
   find_steps(view, cells.lattice, level, workspace.step);
   const LevelStep* step = workspace.step.data();
-  for (std::size_t slot = 0; slot < cells.occupied(); ++slot) {
+  const auto measure = [&](std::size_t slot, const PointsOfCell& points, float* height) {
     const LatticeCell cell = cells.cell[slot];
     const LevelView::Linear reference = view.between(step[cell.row], step[cell.column]);
-    const LowBand band = measure_above(points_in(cells, slot), reference, low_band,
-                                       surface.height.data() + cells.first[slot]);
+    const LowBand band = measure_above(points, reference, low_band, height);
     workspace.part[slot] = band.share;
     surface.ground[slot].low = reference.height + band.mean;
     surface.ground[slot].points = band.points;
+  };
+  for (std::size_t slot = 0; slot < cells.occupied(); ++slot)
+    measure(slot, points_in(cells, slot), surface.height.data() + cells.first[slot]);
+  for (const BuriedInCells::Cell& cell : workspace.buried.cells) {
+    const auto slot = static_cast<std::size_t>(cell.slot);
+    workspace.mixed.resize(static_cast<std::size_t>(cell.last - cell.first));
+    if (cell.first < cell.last)
+      measure(slot, points_kept(surface, workspace, cell), workspace.mixed.data());
+    else
+      forget(slot, workspace, surface);
   }
   set_weights(params, Levels::kFine, workspace, surface);
 }

@@ -240,7 +240,8 @@ void hear_cells(const GroundSurface& surface, int level, GroundSurfaceWorkspace&
   workspace.touched.resize(n + 1);
   for (std::size_t slot = 0; slot < n; ++slot) {
     const GroundCell& ground = surface.ground[slot];
-    heard.low[slot] = workspace.in_ditch[slot] != 0 ? kUnheard : ground.low;
+    heard.low[slot] =
+        workspace.in_ditch[slot] != 0 || ground.points == 0.0F ? kUnheard : ground.low;
     heard.points[slot] = ground.points;
     heard.smooth[slot] = ground.smooth;
     heard.weight[slot] = ground.weight;

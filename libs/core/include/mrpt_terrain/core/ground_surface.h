@@ -153,13 +153,26 @@ struct CellScatter {
   [[nodiscard]] float freedoms() const { return squares[3]; }
 };
 
+/// Points of cells that remain without those below ground that their beams would have passed
+/// through.
+struct BuriedInCells {
+  /// Some points of a cell, `[first, last)` of `kept`.
+  struct Cell {
+    std::int32_t slot, first, last;
+  };
+  std::vector<Cell> cells;      ///< in the order of slots
+  std::vector<CellPoint> kept;  ///< frame of the scan
+};
+
 /// Scratch memory of `find_ground_surface`.
 struct GroundSurfaceWorkspace {
   CellPointsWorkspace sort;
   std::vector<HeightSums> sums;  ///< per slot: low points, about the cell's centre and the lowest
-  std::vector<CellScatter> scatter;       ///< per slot: the same points
-  std::vector<float> lowest;              ///< per slot: height of the lowest point
-  std::vector<float> part;                ///< per slot: share of the low band
+  std::vector<CellScatter> scatter;  ///< per slot: the same points
+  std::vector<float> lowest;         ///< per slot: height of the lowest point
+  std::vector<float> part;           ///< per slot: share of the low band
+  std::vector<float> seen;           ///< per slot: height at which it shows ground, if it does
+  BuriedInCells buried;
   std::vector<std::uint8_t> beside_tall;  ///< per slot: 1 where something tall stands nearby
   std::vector<std::uint8_t> in_ditch;     ///< per slot: 1 in a ditch, which levels do not follow
   std::vector<float> above_plane;         ///< per slot: low height above the plane
