@@ -207,7 +207,8 @@ struct GroundSurfaceWorkspace {
 /// cells, those count as rough that scatter more than range noise along the beams explains, and
 /// those in which beams go on into what they meet lift the reference little.
 ///
-/// Where beams begin is taken to be 1 m above the frame's origin if it is not known.
+/// Where beams begin is taken to be 1 m above the frame's origin if it is not known; if it is,
+/// points do not count that beams could reach only through ground that is seen.
 ///
 /// \param scan metres; z = 0 near the ground under the robot, up to `max_offset` and `max_tilt`
 /// \param[in,out] result overwritten; keeps its memory. Without points it is the plane z = 0.
