@@ -132,7 +132,7 @@ TEST(GroundSurface, AHillIsFollowed) {
   EXPECT_LT(errors.worst, 0.02);
 }
 
-// One beam in fifty is reflected and ends half as far again or twice as far away, below the ground:
+// One beam in fifty is reflected and ends half as far again to twice as far away, below the ground:
 // near the robot that is a point in most cells, which would be the lowest of each. The beams would
 // have had to pass through ground that others show.
 TEST(GroundSurface, ReflectionsBelowTheGroundDoNotPullIt) {

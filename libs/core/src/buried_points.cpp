@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "length_of.h"
+#include "beam_walk.h"
 
 namespace mrpt_terrain {
 namespace {
@@ -91,26 +91,25 @@ class BuriedPoints {
   [[nodiscard]] bool is_buried(const CellPoint& p) const {
     const auto index = static_cast<std::size_t>(p.index);
     if (!origins_.is_measured(index)) return false;
-    const auto& origin = origins_.of(index);
-    const float dx = origin[0] - p.x, dy = origin[1] - p.y, dz = origin[2] - p.z;
-    const float range = length_of(dx, dy);
-    const float end = std::min(range, kFarthest);
+    const BeamWalk walk{kOpening, surface_.lattice().cell_size, kFarthest};
     int crossed = 0, unseen = 0;
     float before = 0.0F;  // height of the ground that was crossed last
-    for (float t = kOpening; t < end; t += surface_.lattice().cell_size) {
-      const float share = t / range;
-      const float seen = seen_at(p.x + share * dx, p.y + share * dy);
-      if (seen == kUnseen) {
-        if (++unseen > kMostUnseen) return false;
-        continue;
+    bool comes_out = false;
+    const bool at_sensor = walk_back(p, origins_.of(index), walk, [&](float x, float y, float z) {
+      const float seen = seen_at(x, y);
+      if (seen == kUnseen) return ++unseen <= kMostUnseen;
+      comes_out = z > seen - kBelow;
+      if (comes_out) {
+        comes_out = std::abs(before - seen) <= kJump;
+        return false;
       }
-      if (p.z + share * dz > seen - kBelow)
-        return crossed >= kFewestCrossed && std::abs(before - seen) <= kJump;
       ++crossed;
       before = seen;
-    }
+      return true;
+    });
     // Into the blind spot: it comes out there.
-    return end == range && crossed >= kFewestCrossed && std::abs(before) <= kNearRobot;
+    if (at_sensor) comes_out = std::abs(before) <= kNearRobot;
+    return crossed >= kFewestCrossed && comes_out;
   }
 
   void keep_others(std::size_t slot) const {

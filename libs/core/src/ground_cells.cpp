@@ -22,7 +22,7 @@ constexpr float kHighPointWeight = 3.0F;
 // Mean weight of the cells around, where what is rough is the ground, and where it stands on it.
 constexpr float kRoughAround = 0.2F, kSmoothAround = 0.4F;
 // Among smooth cells, one that is less firm or solid than this is loose: it scatters by 3.6 cm
-// along the beams, which is more than range noise.
+// along the beams, or more for a noisy sensor, which is more than range noise.
 constexpr float kLoose = 0.6F;
 // What cells around add to the scatter of a cell, and degrees of freedom with which its own points
 // are enough to tell that it scatters less; two of them go to where its surface lies.
@@ -256,6 +256,7 @@ void measure_smoothness(const BeamOrigins& origins, const GroundSurfaceParams& p
     const float variance = variance_across(around);
     const Incidence at = incidence_of(origins, surface, slot, around);
     const float along = variance_along_beam(surface, workspace.scatter, slot, at.beam);
+    // Until the noise is known: variances, and what they are to be compared with.
     workspace.even[slot] = variance;
     workspace.firm[slot] = firm + along_beam * at.squared_sine;
     workspace.solid[slot] = along / (along_beam + grazed / at.squared_sine);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "length_of.h"
+#include "beam_walk.h"
 #include "slots_around.h"
 
 namespace mrpt_terrain {
@@ -24,22 +24,21 @@ constexpr int kFewestCrossed = 3, kSteps = 3;
 constexpr float kOnGround = 0.2F;
 
 bool is_stray(const HoleInput& input, const CellPoint& p) {
-  const auto& origin = input.origins.of(static_cast<std::size_t>(p.index));
-  const float dx = origin[0] - p.x, dy = origin[1] - p.y, dz = origin[2] - p.z;
-  const float range = length_of(dx, dy);
+  const GroundSurface& surface = input.field.surface;
   int crossed = 0, steps = 0;
-  for (float t = kOpening; t < std::min(range, kFarthest); t += kStep) {
-    const float share = t / range;
-    const float x = p.x + share * dx, y = p.y + share * dy;
-    if (p.z + share * dz > input.field.surface.height_at(x, y) - kAboveGround) break;
-    ++steps;
-    const std::int32_t cell = input.field.surface.lattice().cell_at(x, y);
-    const std::int32_t slot =
-        cell < 0 ? -1 : input.field.surface.cells.slot_of[static_cast<std::size_t>(cell)];
-    if (slot < 0) continue;
-    const float low = input.field.surface.ground[static_cast<std::size_t>(slot)].low;
-    if (std::abs(low - input.field.surface.height_at(x, y)) < kOnGround) ++crossed;
-  }
+  walk_back(p, input.origins.of(static_cast<std::size_t>(p.index)), {kOpening, kStep, kFarthest},
+            [&](float x, float y, float z) {
+              const float ground = surface.height_at(x, y);
+              if (z > ground - kAboveGround) return false;
+              ++steps;
+              const std::int32_t cell = surface.lattice().cell_at(x, y);
+              const std::int32_t slot =
+                  cell < 0 ? -1 : surface.cells.slot_of[static_cast<std::size_t>(cell)];
+              if (slot < 0) return true;
+              const float low = surface.ground[static_cast<std::size_t>(slot)].low;
+              if (std::abs(low - ground) < kOnGround) ++crossed;
+              return true;
+            });
   return crossed >= kFewestCrossed && kSteps * crossed >= steps;
 }
 
